@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: MIT
+# Flags of every target. Exact code must not be contracted or reassociated: pictures are the same bytes whatever
+# compiler, optimisation level or processor made them (docs/determinism.md).
+add_library(rayshade_flags INTERFACE)
+target_compile_options(rayshade_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
+  -ffp-contract=off -fno-fast-math -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # False positives of GCC 12 in optimised std::string and std::optional code.
+  target_compile_options(rayshade_flags INTERFACE -Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow
+    -Wno-array-bounds)
+endif()
+target_include_directories(rayshade_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
+target_compile_definitions(rayshade_flags INTERFACE FMT_HEADER_ONLY=1)
+if(RAYSHADE_SANITIZE)
+  target_compile_options(rayshade_flags INTERFACE -fsanitize=${RAYSHADE_SANITIZE} -fno-omit-frame-pointer
+    -fno-sanitize-recover=all)
+  target_link_options(rayshade_flags INTERFACE -fsanitize=${RAYSHADE_SANITIZE})
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+set(CMAKE_CXX_FLAGS_DEBUG "-O0 -g")

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Values that may vary with time (language.md 3.2): immutable trees over `time` and `frame`, evaluated over doubles
+// or, for conservative motion bounds, over an interval of times (rule 9). Constants carry no tree.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "rayshade/math/interval.h"
+
+namespace rayshade {
+
+enum class Operation : std::uint8_t {
+  kConstant, kTime, kFrame,
+  kAdd, kSubtract, kMultiply, kDivide, kRemainder, kPower, kNegate,
+  kSin, kCos, kTan, kAsin, kAcos, kAtan, kSqrt, kHypot, kLinear,
+};
+
+/// The moment at which an expression is evaluated.
+struct Moment {
+  double time = 0;
+  double frame = 0;
+};
+
+class Expression {
+ public:
+  Expression(double constant = 0) : constant_(constant) {}  // NOLINT(google-explicit-constructor): numbers are expressions
+  static Expression time();
+  static Expression frame();
+  /// An operation over its operands (unary operations take one, kLinear four). Folded to a constant when all operands
+  /// are constant and the operation is not kLinear. kRemainder: both truncated to int, C remainder; a constant
+  /// divisor of zero must be refused by the caller before. kPower is fn::pow.
+  static Expression apply(Operation op, std::array<Expression, 4> operands);
+
+  bool constant() const { return !node_; }
+  /// The value; for a constant whatever the moment.
+  double evaluate(const Moment& moment) const;
+  /// Contains the value at every time of the interval.
+  Interval evaluate(const Interval& time, double frame) const;
+  /// Canonical text that parses to the same tree (parenthesised when not constant; %.17g constants, shortest that
+  /// round-trips).
+  std::string text() const;
+
+ private:
+  struct Node;
+  double constant_ = 0;
+  std::shared_ptr<const Node> node_;
+};
+
+}  // namespace rayshade

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Everything that a scene names is read through one door: names to bytes (rule 12). The shell reads files, tests and
+// fuzzers feed memory, and a cluster sends recorded bytes.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace rayshade {
+
+using Bytes = std::shared_ptr<const std::string>;
+
+/// A file that cannot be read; what() is the reason ("No such file or directory").
+struct ProviderError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+class Provider {
+ public:
+  virtual ~Provider() = default;
+  /// The whole content of `name`, taken as written (relative to the working directory). The name "-" is standard
+  /// input. Throws ProviderError. Thread-safe.
+  virtual Bytes read(const std::string& name) = 0;
+};
+
+/// Reads files and standard input. Refuses directories and files larger than `limit` bytes.
+class FileProvider : public Provider {
+ public:
+  explicit FileProvider(std::size_t limit = std::size_t{8} << 30) : limit_(limit) {}
+  Bytes read(const std::string& name) override;
+
+ private:
+  std::size_t limit_;
+};
+
+/// Serves what it was given.
+class MemoryProvider : public Provider {
+ public:
+  void add(std::string name, std::string content);
+  Bytes read(const std::string& name) override;
+
+ private:
+  std::map<std::string, Bytes> files_;
+};
+
+}  // namespace rayshade
