@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#include "rayshade/schedule/block_grid.h"
+
+#include <algorithm>
+
+namespace rayshade {
+
+BlockGrid::BlockGrid(int width, int height, int side)
+    : width_(width), height_(height), side_(std::max(1, side)), columns_((width_ - 1) / side_ + 1),
+      rows_((height_ - 1) / side_ + 1) {}
+
+Block BlockGrid::block(std::int64_t number) const {
+  const int column = static_cast<int>(number % columns_), row = static_cast<int>(number / columns_);
+  const int x = column * side_, y = row * side_;
+  return {number, x, y, std::min(side_, width_ - x), std::min(side_, height_ - y)};
+}
+
+int default_block_side(int width, int height, int workers) {
+  const double pixels = static_cast<double>(width) * height;
+  int side = 64;
+  while (side > 16 && pixels / (static_cast<double>(side) * side) < 24.0 * workers) side /= 2;
+  return side;
+}
+
+}  // namespace rayshade

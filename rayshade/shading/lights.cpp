@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "rayshade/shading/lights.h"
+
+#include "rayshade/math/functions.h"
+
+namespace rayshade {
+namespace {
+
+constexpr double kDegree = fn::kPi / 180;
+
+ShadingLight prepare(const Light& light) {
+  ShadingLight out;
+  out.kind = light.kind;
+  out.no_shadow = light.no_shadow;
+  out.intensity = light.intensity;
+  out.position = light.position;
+  if (light.kind == LightKind::kDirectional) out.position = normalize(light.position);
+  if (light.kind == LightKind::kSpot) {
+    out.axis = normalize(light.target - light.position);
+    out.exponent = light.exponent;
+    out.cos_inner = fn::cos(light.inner * kDegree);
+    out.cos_outer = fn::cos(light.outer * kDegree);
+    out.cone = light.inner < 90 && out.cos_inner > 0;
+  }
+  out.radius = light.radius;
+  out.black = light.intensity == Color{};
+  return out;
+}
+
+}  // namespace
+
+std::vector<ShadingLight> prepare_lights(const Scene& scene) {
+  std::vector<Light> written(scene.lights);
+  if (written.empty()) written.push_back(default_light());
+  std::vector<ShadingLight> lights;
+  for (const Light& light : written) {
+    ShadingLight base = prepare(light);
+    if (light.kind != LightKind::kArea) {
+      lights.push_back(base);
+      continue;
+    }
+    // Cells with v outer and u inner, each of its share of the intensity (shading.md 4.3).
+    const int nu = light.u_samples, nv = light.v_samples;
+    base.edge_u = (light.u_end - light.position) / nu;
+    base.edge_v = (light.v_end - light.position) / nv;
+    base.intensity = light.intensity * (1.0 / (static_cast<double>(nu) * nv));
+    for (int j = 0; j < nv; ++j) {
+      for (int i = 0; i < nu; ++i) {
+        ShadingLight cell = base;
+        cell.position = light.position + static_cast<double>(i) * base.edge_u + static_cast<double>(j) * base.edge_v;
+        lights.push_back(cell);
+      }
+    }
+  }
+  std::reverse(lights.begin(), lights.end());
+  return lights;
+}
+
+double spot_factor(const ShadingLight& light, double x) {
+  if (!(x > 0)) return 0;
+  double ramp = 1;
+  if (light.cone) {
+    const double inner = light.cos_inner, outer = light.cos_outer;
+    if (x < outer || (x == outer && inner == outer)) return 0;
+    if (x <= inner) {
+      const double w = (x - outer) / (inner - outer);
+      ramp = w * w * (3 - 2 * w);
+    }
+  }
+  if (light.exponent == 0) return ramp;
+  return fn::pow(x, light.exponent) * ramp;
+}
+
+Illumination illuminate(const ShadingLight& light, const Vec3& point, double xi, double zeta) {
+  Illumination out;
+  out.color = light.intensity;
+  if (light.kind == LightKind::kDirectional) {
+    out.direction = light.position;
+    return out;
+  }
+  Vec3 place = light.position;
+  if (light.kind == LightKind::kArea) place = place + xi * light.edge_u + zeta * light.edge_v;
+  const Vec3 toward = place - point;
+  out.distance = length(toward);
+  if (!(out.distance > 0)) {
+    out.reaches = false;
+    return out;
+  }
+  out.direction = toward / out.distance;
+  if (light.kind == LightKind::kSpot) {
+    const double factor = spot_factor(light, -dot(light.axis, out.direction));
+    out.reaches = factor != 0;
+    out.color *= factor;
+  }
+  return out;
+}
+
+Vec3 extended_target(const ShadingLight& light, const Vec3& point, int sample_number, int side, double xi, double zeta) {
+  const Vec3 center = light.position - point;
+  Vec3 e1, e2;
+  coordinate_system(center, e1, e2);
+  const double step = 2 * light.radius / side;
+  const double v = -light.radius + (sample_number % side + xi) * step;
+  const double w = -light.radius + (sample_number / side + zeta) * step;
+  return center + w * e1 + v * e2;
+}
+
+}  // namespace rayshade

@@ -1,0 +1,489 @@
+// SPDX-License-Identifier: MIT
+#include "rayshade/shading/ray_tree.h"
+
+#include <algorithm>
+
+#include "rayshade/math/functions.h"
+#include "rayshade/sampling/random.h"
+#include "rayshade/shading/atmosphere.h"
+
+namespace rayshade {
+namespace {
+
+/// Lights of one run of shadow queries; bounds what is pending for scenes with thousands of area cells.
+constexpr std::size_t kQueriesPerRun = 4096;
+/// A shadow ray that meets more transparent surfaces than this is taken as blocked.
+constexpr int kLongestWalk = 100'000;
+
+bool any_above(const Color& c, const Color& limit) { return c.r > limit.r || c.g > limit.g || c.b > limit.b; }
+bool any_above(const Color& c, double limit) { return c.r > limit || c.g > limit || c.b > limit; }
+bool all_below(const Color& c, double limit) { return c.r < limit && c.g < limit && c.b < limit; }
+bool is_black(const Color& c) { return c.r == 0 && c.g == 0 && c.b == 0; }
+
+enum Slot : std::uint8_t { kTransmittedSlot = 0, kReflectedSlot = 1 };
+
+}  // namespace
+
+/// A ray of the tree, from its birth until its colour has gone to its parent.
+struct RayTree::Node {
+  Ray ray;
+  double lo = kEpsilon;
+  Color contribution{1, 1, 1};
+  std::uint64_t path = 0;
+  std::uint32_t parent = kNone;
+  std::uint32_t root = 0;                ///< index of the eye sample
+  std::uint16_t depth = 0;
+  RayKind kind = RayKind::kEye;
+  Slot slot = kTransmittedSlot;
+
+  // The media stack is a chain of the ancestors that pushed an entry; they outlive their descendants.
+  std::uint32_t medium = kNone;          ///< node whose entry is on top
+  std::uint32_t medium_below = kNone;    ///< entry pushed by this ray
+  double medium_index = 1, medium_extinction = 1;
+
+  // Known after its own hit was shaded:
+  double distance = kFar;
+  Vec3 end;
+  Color color;
+  Color factor[2];
+  Color child_color[2];
+  double child_distance = kFar;
+  double child_extinction = 1;
+  std::uint8_t children = 0;             ///< bit per slot
+  std::uint8_t waiting = 0;
+};
+
+/// A hit being shaded.
+struct RayTree::Shade {
+  std::uint32_t node = 0;
+  TexturedHit hit;
+  Vec3 mirror;                           ///< R
+  double k = 0;                          ///< -I.N
+  double extent = 1;
+};
+
+/// One light at one hit, waiting for its shadow.
+struct RayTree::PendingLight {
+  std::uint32_t shade = 0;
+  std::uint32_t light = 0;
+  double cosine = 0;
+  double highlight = 0;                  ///< R.L
+  Color color;                           ///< before shadows; after them when answered
+  bool shadowed = false;                 ///< a shadow ray decides
+  bool blocked = false;
+  bool skipped = false;                  ///< has no effect; kept only for the observer
+};
+
+/// A shadow ray on its way through transparent surfaces (shading.md 5.3).
+struct RayTree::Walk {
+  std::uint32_t pending = 0;
+  std::uint32_t query = 0;
+  double near = 0;
+  bool in_medium = false;
+  double extinction = 1;
+  int steps = 0;
+};
+
+RayTree::RayTree(const ShadingScene& scene) : scene_(scene) {
+  // Small enough that a batch and its answers stay in the second-level cache.
+  batch_ = std::clamp<std::size_t>(kQueriesPerRun / std::max<std::size_t>(1, scene.lights.size()), 1, 64);
+}
+
+RayTree::~RayTree() = default;
+
+std::uint32_t RayTree::allocate() {
+  if (!free_.empty()) {
+    const std::uint32_t id = free_.back();
+    free_.pop_back();
+    nodes_[id] = Node{};
+    return id;
+  }
+  nodes_.emplace_back();
+  return static_cast<std::uint32_t>(nodes_.size() - 1);
+}
+
+void RayTree::trace(std::span<const EyeSample> samples, std::span<SampleResult> results) {
+  counts_.eye_rays += samples.size();
+  for (std::size_t first = 0; first < samples.size(); first += batch_) {
+    const std::size_t count = std::min(batch_, samples.size() - first);
+    for (std::size_t i = first + count; i-- > first;) {
+      const std::uint32_t id = allocate();
+      nodes_[id].ray = samples[i].ray;
+      nodes_[id].root = static_cast<std::uint32_t>(i);
+      results[i] = SampleResult{};
+      pending_.push_back(id);
+    }
+    while (!pending_.empty()) run_batch(samples, results);
+  }
+}
+
+void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResult> results) {
+  // The newest nodes first: their subtrees are finished, and their memory free, before older ones are begun.
+  const std::size_t count = std::min(batch_, pending_.size());
+  batch_nodes_.assign(pending_.end() - static_cast<std::ptrdiff_t>(count), pending_.end());
+  std::reverse(batch_nodes_.begin(), batch_nodes_.end());
+  pending_.resize(pending_.size() - count);
+
+  nearest_queries_.resize(count);
+  if (nearest_answers_.size() < count) nearest_answers_.resize(count);
+  if (shades_.size() < count) shades_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Node& node = nodes_[batch_nodes_[i]];
+    nearest_queries_[i] = {node.ray, node.lo, kFar, kAnyOpacity, node.kind, node.depth, kNone};
+  }
+  const std::span<NearestAnswer> answers(nearest_answers_.data(), count);
+  scene_.intersector->nearest(nearest_queries_, answers, scratch_);
+
+  shade_hits(samples, results);
+  const std::size_t lights = scene_.lights.size();
+  if (shade_count_ > 0) {
+    const std::size_t run = std::max<std::size_t>(1, kQueriesPerRun / shade_count_);
+    for (std::size_t first = 0; first < lights; first += run) {
+      emit_lights(first, std::min(first + run, lights), samples);
+      answer_shadows(samples, results);
+      combine_lights();
+    }
+  }
+  for (std::size_t i = 0; i < shade_count_; ++i) {
+    spawn(shades_[i]);
+    if (nodes_[shades_[i].node].waiting == 0) finish(shades_[i].node, results);
+  }
+}
+
+/// Misses become background at once; hits are textured and get their ambient part (shading.md 2.2, 2.3 step 1).
+void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleResult> results) {
+  shade_count_ = 0;
+  for (std::size_t i = 0; i < batch_nodes_.size(); ++i) {
+    const std::uint32_t id = batch_nodes_[i];
+    Node& node = nodes_[id];
+    const NearestAnswer& answer = nearest_answers_[i];
+    SampleResult& result = results[node.root];
+    result.tests += answer.tests;
+    result.bounds_tests += answer.bounds_tests;
+    if (!answer.found) {
+      node.color = scene_.settings->background;
+      node.distance = kFar;
+      node.end = node.ray.at(kFar);
+      if (observer_) {
+        observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution, node.depth, false, kFar, nullptr,
+                           nullptr});
+      }
+      finish(id, results);
+      continue;
+    }
+    ++counts_.shaded_hits;
+    Shade& shade = shades_[shade_count_++];
+    shade.node = id;
+    const EyeSample& sample = samples[node.root];
+    const SampleContext context{sample.sample_number, scene_.settings->samples,
+                                {scene_.settings->seed, scene_.frame, sample.x, sample.y, sample.sample, node.path}};
+    evaluate_hit(*scene_.compiled, *scene_.textures, answer.hit, node.ray, context, scratch_, shade.hit);
+    const WorldHit& world = shade.hit.world;
+    shade.extent = world_extent(*scene_.compiled, answer.hit);
+    shade.k = -dot(node.ray.direction, world.normal);
+    shade.mirror = node.ray.direction + (2 * shade.k) * world.normal;
+    node.distance = answer.hit.t();
+    node.end = world.point;
+    node.color = shade.hit.surface.ambient * scene_.settings->ambient_light;
+    if (node.kind == RayKind::kEye) {
+      result.hit = true;
+      result.distance = node.distance;
+      result.normal = world.normal;
+      result.leaf = answer.hit.leaf;
+    }
+    if (observer_) {
+      observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution, node.depth, true, node.distance,
+                         &answer.hit, &shade.hit});
+    }
+  }
+}
+
+/// Sections 2.4 steps 1 and 2 and 4: which lights matter at which hit, and the shadow rays they need.
+void RayTree::emit_lights(std::size_t first_light, std::size_t last_light, std::span<const EyeSample> samples) {
+  lights_.clear();
+  shadow_queries_.clear();
+  shadow_owner_.clear();
+  const RenderSettings& settings = *scene_.settings;
+  const Opacity mask = settings.transparent_shadows && scene_.compiled->has_transparent ? kOpaque : kAnyOpacity;
+  for (std::uint32_t s = 0; s < shade_count_; ++s) {
+    const Shade& shade = shades_[s];
+    const Node& node = nodes_[shade.node];
+    const WorldHit& world = shade.hit.world;
+    const Surface& surface = shade.hit.surface;
+    const EyeSample& sample = samples[node.root];
+    const bool answers_highlight = surface.specular_exponent >= kEpsilon && !is_black(surface.specular);
+    for (std::size_t l = first_light; l < last_light; ++l) {
+      const ShadingLight& light = scene_.lights[l];
+      const RandomKey key{settings.seed, scene_.frame, sample.x, sample.y, sample.sample};
+      std::array<double, 2> draws{};
+      if (light.kind == LightKind::kArea) draws = uniform2(key, dimension(node.path, Purpose::kLight, l));
+      const Illumination light_in = illuminate(light, world.point, draws[0], draws[1]);
+      PendingLight pending;
+      pending.shade = s;
+      pending.light = static_cast<std::uint32_t>(l);
+      double c = dot(light_in.direction, world.normal);
+      if (world.smooth && c <= 0) {
+        const double geometric = dot(light_in.direction, world.geometric_normal);
+        if (geometric > 0) c = geometric;
+      }
+      pending.cosine = c;
+      pending.color = light_in.color;
+      pending.highlight = dot(shade.mirror, light_in.direction);
+      if (!light_in.reaches) {
+        ++counts_.skipped_dark_lights;
+        pending.skipped = true;
+      } else if (c > 0) {
+        const bool highlight = answers_highlight && pending.highlight > 0;
+        if (light.black || (is_black(surface.diffuse) && !highlight)) {
+          ++counts_.skipped_dark_lights;
+          pending.skipped = true;
+        }
+      } else if (surface.translucency < kEpsilon) {
+        ++counts_.skipped_back_lights;
+        pending.skipped = true;
+      }
+      if (pending.skipped) {
+        if (observer_) lights_.push_back(pending);
+        continue;
+      }
+      if (!settings.shadows || light.no_shadow || surface.no_shadow) {
+        ++counts_.skipped_unshadowed;
+      } else {
+        pending.shadowed = true;
+        ++counts_.shadow_rays;
+        Vec3 direction = light_in.direction;
+        double far = light_in.distance;
+        if (light.kind == LightKind::kExtended) {
+          draws = uniform2(key, dimension(node.path, Purpose::kLight, l));
+          const Vec3 target =
+              extended_target(light, world.point, sample.sample_number, settings.samples, draws[0], draws[1]);
+          far = length(target);
+          direction = target / far;
+        }
+        const RayStart start = secondary_start(world, direction, shade.extent, true);
+        shadow_queries_.push_back({{start.origin, direction, node.ray.time, true}, start.lo, far, mask,
+                                   static_cast<std::uint32_t>(l)});
+        shadow_owner_.push_back(static_cast<std::uint32_t>(lights_.size()));
+      }
+      lights_.push_back(pending);
+    }
+  }
+}
+
+void RayTree::answer_shadows(std::span<const EyeSample> samples, std::span<SampleResult> results) {
+  if (shadow_queries_.empty()) return;
+  if (shadow_answers_.size() < shadow_queries_.size()) shadow_answers_.resize(shadow_queries_.size());
+  const std::span<OcclusionAnswer> answers(shadow_answers_.data(), shadow_queries_.size());
+  scene_.intersector->occluded(shadow_queries_, answers, scratch_);
+  for (std::size_t i = 0; i < shadow_queries_.size(); ++i) {
+    PendingLight& pending = lights_[shadow_owner_[i]];
+    SampleResult& result = results[nodes_[shades_[pending.shade].node].root];
+    result.tests += answers[i].tests;
+    result.bounds_tests += answers[i].bounds_tests;
+    pending.blocked = answers[i].occluded;
+    if (pending.blocked) ++counts_.shadow_hits;
+  }
+  if (scene_.settings->transparent_shadows && scene_.compiled->has_transparent) follow_transparent(samples, results);
+}
+
+/// The ordered walk of shading.md 5.3, for the shadow rays that no opaque leaf stopped.
+void RayTree::follow_transparent(std::span<const EyeSample> samples, std::span<SampleResult> results) {
+  walks_.clear();
+  for (std::uint32_t i = 0; i < shadow_queries_.size(); ++i) {
+    if (!lights_[shadow_owner_[i]].blocked) walks_.push_back({shadow_owner_[i], i, shadow_queries_[i].lo, false, 1, 0});
+  }
+  std::vector<NearestQuery> queries;
+  std::vector<NearestAnswer> answers;
+  while (!walks_.empty()) {
+    queries.resize(walks_.size());
+    answers.resize(walks_.size());
+    for (std::size_t i = 0; i < walks_.size(); ++i) {
+      const OcclusionQuery& query = shadow_queries_[walks_[i].query];
+      queries[i] = {query.ray, walks_[i].near, query.hi, kTransparent, RayKind::kShadow, 0, query.light};
+    }
+    scene_.intersector->nearest(queries, answers, scratch_);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < walks_.size(); ++i) {
+      Walk walk = walks_[i];
+      PendingLight& pending = lights_[walk.pending];
+      const Node& node = nodes_[shades_[pending.shade].node];
+      results[node.root].tests += answers[i].tests;
+      results[node.root].bounds_tests += answers[i].bounds_tests;
+      if (!answers[i].found) continue;
+      if (walk.steps++ == 0) {
+        ++counts_.shadow_hits;
+        ++counts_.transparent_walks;
+      }
+      const Hit& hit = answers[i].hit;
+      if (walk.steps > kLongestWalk || surface_of(*scene_.compiled, hit).transparency < kEpsilon) {
+        pending.blocked = true;
+        continue;
+      }
+      if (walk.in_medium && walk.extinction != 1) {
+        pending.color *= fn::pow(walk.extinction, hit.t() - walk.near);
+      }
+      const EyeSample& sample = samples[node.root];
+      const SampleContext context{sample.sample_number, scene_.settings->samples,
+                                  {scene_.settings->seed, scene_.frame, sample.x, sample.y, sample.sample, node.path}};
+      const Transmittance through = evaluate_transmittance(*scene_.compiled, *scene_.textures, hit, queries[i].ray,
+                                                           context, scratch_);
+      pending.color *= through.color;
+      walk.in_medium = through.entering;
+      walk.extinction = through.extinction;
+      if (all_below(pending.color, kEpsilon)) {
+        pending.blocked = true;
+        continue;
+      }
+      const double step = kEpsilon * std::min(1.0, world_extent(*scene_.compiled, hit));
+      walk.near = std::max(hit.t() + step, std::nextafter(hit.t(), kFar));
+      if (walk.near >= queries[i].hi) continue;
+      walks_[kept++] = walk;
+    }
+    walks_.resize(kept);
+  }
+}
+
+/// Section 2.4 steps 3 and 4, in the fixed order of the lights.
+void RayTree::combine_lights() {
+  for (const PendingLight& pending : lights_) {
+    const Shade& shade = shades_[pending.shade];
+    Node& node = nodes_[shade.node];
+    const Surface& surface = shade.hit.surface;
+    const Color before = node.color;
+    if (!pending.skipped && !pending.blocked) {
+      if (pending.cosine > 0) {
+        node.color += (surface.diffuse * pending.cosine) * pending.color;
+        if (surface.specular_exponent >= kEpsilon && pending.highlight > 0) {
+          node.color += (surface.specular * fn::pow(pending.highlight, surface.specular_exponent)) * pending.color;
+        }
+      } else {
+        node.color += (surface.translucent * -pending.cosine) * pending.color;
+        if (surface.transmitted_exponent >= kEpsilon && -pending.highlight > 0) {
+          node.color += (surface.body * fn::pow(-pending.highlight, surface.transmitted_exponent)) * pending.color;
+        }
+        node.color *= surface.translucency;
+      }
+    }
+    if (observer_) {
+      observer_->on_light({shade.node, pending.light, pending.cosine, pending.skipped,
+                           pending.blocked || pending.skipped ? Color{} : pending.color, node.color - before});
+    }
+  }
+}
+
+/// Sections 2.3 steps 3 to 6 and 2.5.
+void RayTree::spawn(Shade& shade) {
+  const RenderSettings& settings = *scene_.settings;
+  const Surface& surface = shade.hit.surface;
+  const WorldHit& world = shade.hit.world;
+  Color reflect = surface.specular * surface.reflectance;
+  const bool transmits = surface.transparency > kEpsilon;
+  if (nodes_[shade.node].depth >= settings.max_depth) {
+    if (transmits || any_above(reflect, kEpsilon)) ++counts_.skipped_depth;
+    return;
+  }
+  const auto child = [&](RayKind kind, Slot slot, const Vec3& direction, const Color& factor, const Color& contribution) {
+    const std::uint32_t id = allocate();
+    Node& node = nodes_[shade.node];
+    Node& out = nodes_[id];
+    const RayStart start = secondary_start(world, direction, shade.extent, false);
+    out.ray = {start.origin, direction, node.ray.time, std::fabs(length_squared(direction) - 1) < 1e-8};
+    out.lo = start.lo;
+    out.contribution = contribution;
+    out.path = child_path(node.path, slot);
+    out.parent = shade.node;
+    out.root = node.root;
+    out.depth = static_cast<std::uint16_t>(node.depth + 1);
+    out.kind = kind;
+    out.slot = slot;
+    out.medium = node.medium;
+    node.factor[slot] = factor;
+    node.children = static_cast<std::uint8_t>(node.children | (1u << slot));
+    ++node.waiting;
+    return id;
+  };
+
+  std::uint32_t transmitted = kNone;
+  if (transmits) {
+    const Color filter = surface.body * surface.transparency;
+    const Color contribution = filter * nodes_[shade.node].contribution;
+    if (!any_above(contribution, settings.cutoff)) {
+      ++counts_.skipped_cutoff;
+    } else {
+      const Node& node = nodes_[shade.node];
+      const auto index_of = [&](std::uint32_t medium) {
+        return medium == kNone ? settings.atmosphere_index : nodes_[medium].medium_index;
+      };
+      const double own_index = surface.index > 0 ? surface.index : 1;
+      const std::uint32_t below = node.medium == kNone ? kNone : nodes_[node.medium].medium_below;
+      const double n1 = world.entering ? index_of(node.medium) : own_index;
+      const double n2 = world.entering ? own_index : index_of(below);
+      const Vec3 normal = shade.k < 0 ? -world.normal : world.normal;
+      const double k = std::fabs(shade.k);
+      const double m = n1 / n2;
+      const double s = 1 - m * m * (1 - k * k);
+      if (s < 0) {
+        ++counts_.total_reflections;
+        reflect += filter;
+      } else {
+        const Vec3 direction = m * node.ray.direction + (m * k - std::sqrt(s)) * normal;
+        if (is_finite(direction)) {
+          transmitted = child(RayKind::kTransmitted, kTransmittedSlot, direction, filter, contribution);
+          Node& out = nodes_[transmitted];
+          if (world.entering) {
+            out.medium_below = out.medium;
+            out.medium_index = own_index;
+            out.medium_extinction = surface.extinction;
+            out.medium = transmitted;
+          } else {
+            out.medium = below;
+          }
+          nodes_[shade.node].child_extinction =
+              out.medium == kNone ? 1 : nodes_[out.medium].medium_extinction;
+          ++counts_.transmitted_rays;
+        }
+      }
+    }
+  }
+  if (any_above(reflect, kEpsilon)) {
+    const Color contribution = reflect * nodes_[shade.node].contribution;
+    if (!any_above(contribution, settings.cutoff)) {
+      ++counts_.skipped_cutoff;
+    } else if (is_finite(shade.mirror)) {
+      pending_.push_back(child(RayKind::kReflected, kReflectedSlot, shade.mirror, reflect, contribution));
+      ++counts_.reflected_rays;
+    }
+  }
+  if (transmitted != kNone) pending_.push_back(transmitted);
+}
+
+/// Adds up a node whose children are known, and goes on to its parent if that was the last it waited for.
+void RayTree::finish(std::uint32_t id, std::span<SampleResult> results) {
+  for (;;) {
+    Node& node = nodes_[id];
+    if (node.children & (1u << kTransmittedSlot)) {
+      Color through = node.child_color[kTransmittedSlot] * node.factor[kTransmittedSlot];
+      if (node.child_extinction != 1) through *= fn::pow(node.child_extinction, node.child_distance);
+      node.color += through;
+    }
+    if (node.children & (1u << kReflectedSlot)) {
+      node.color += node.factor[kReflectedSlot] * node.child_color[kReflectedSlot];
+    }
+    if (node.medium == kNone && !scene_.settings->effects.empty()) {
+      node.color = apply_atmosphere(scene_.settings->effects, node.color, node.ray, node.distance, node.end);
+    }
+    if (observer_) observer_->on_finish(id, node.color);
+    free_.push_back(id);
+    if (node.parent == kNone) {
+      results[node.root].color = node.color;
+      return;
+    }
+    Node& parent = nodes_[node.parent];
+    parent.child_color[node.slot] = node.color;
+    if (node.slot == kTransmittedSlot) parent.child_distance = node.distance;
+    if (--parent.waiting > 0) return;
+    id = node.parent;
+  }
+}
+
+}  // namespace rayshade

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// The ray tree (shading.md 2 to 5), evaluated without ever waiting inside it (rule 4).
+//
+// Rays are nodes of an arena. A round takes the newest pending nodes (the deepest first, so that what is pending stays
+// bounded by batch x depth whatever the scene), asks the Intersector for their nearest hits in one span, textures the
+// hits, asks for all their shadows in one span per run of lights, adds up the lights in their fixed order, and pushes
+// the secondary rays. A node is finished when its children are; its colour then goes to its parent. All sums have an
+// order of their own, so batches of any size and answers that come later give the same bytes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "rayshade/geometry/intersector.h"
+#include "rayshade/scene/settings.h"
+#include "rayshade/shading/counts.h"
+#include "rayshade/shading/lights.h"
+#include "rayshade/texture/apply.h"
+
+namespace rayshade {
+
+/// All that shading reads; shared by threads, immutable while rendering.
+struct ShadingScene {
+  const CompiledScene* compiled = nullptr;
+  const CompiledTextures* textures = nullptr;
+  const RenderSettings* settings = nullptr;
+  const Intersector* intersector = nullptr;
+  std::vector<ShadingLight> lights;   ///< prepare_lights
+  int frame = 0;
+};
+
+/// One eye ray. `sample` is k, the number of the cell within the pixel; `sample_number` is s (shading.md 7.6).
+struct EyeSample {
+  Ray ray;
+  std::uint32_t x = 0, y = 0;         ///< pixel in screen coordinates
+  std::uint32_t sample = 0;
+  int sample_number = 0;
+};
+
+/// What an eye ray brought back.
+struct SampleResult {
+  Color color;
+  bool hit = false;                   ///< alpha
+  double distance = kFar;             ///< of the eye ray's own hit
+  Vec3 normal;                        ///< shading normal there, world space, after textures
+  LeafId leaf = 0;
+  std::uint32_t tests = 0;            ///< exact tests by all rays of the tree, shadows included
+  std::uint32_t bounds_tests = 0;
+};
+
+/// Told of everything that happens in the tree of one eye ray (--explain). Calls come in the order of evaluation.
+class TreeObserver {
+ public:
+  struct HitEvent {
+    std::uint32_t node, parent;
+    RayKind kind;
+    const Ray* ray;
+    Color contribution;
+    int depth;
+    bool found;
+    double distance;
+    const Hit* hit;
+    const TexturedHit* surface;       ///< null where nothing was hit
+  };
+  struct LightEvent {
+    std::uint32_t node;
+    std::uint32_t light;              ///< index in ShadingScene::lights
+    double cosine;
+    bool skipped;                     ///< no shadow ray was needed
+    Color arriving;                   ///< after shadows; black where blocked
+    Color added;
+  };
+  virtual ~TreeObserver() = default;
+  virtual void on_hit(const HitEvent& event) = 0;
+  virtual void on_light(const LightEvent& event) = 0;
+  virtual void on_finish(std::uint32_t node, const Color& color) = 0;
+};
+
+/// Evaluates ray trees; one per thread.
+class RayTree {
+ public:
+  explicit RayTree(const ShadingScene& scene);
+  ~RayTree();
+  RayTree(const RayTree&) = delete;
+  RayTree& operator=(const RayTree&) = delete;
+  /// Colours of the samples; results[i] belongs to samples[i].
+  void trace(std::span<const EyeSample> samples, std::span<SampleResult> results);
+
+  void set_observer(TreeObserver* observer) { observer_ = observer; }
+  TraceScratch& scratch() { return scratch_; }
+  const ShadingCounts& counts() const { return counts_; }
+  /// Largest number of tree nodes alive at once, a measure of pending work.
+  std::size_t peak_nodes() const { return nodes_.size(); }
+
+ private:
+  struct Node;
+  struct Shade;
+  struct PendingLight;
+  struct Walk;
+
+  std::uint32_t allocate();
+  void run_batch(std::span<const EyeSample> samples, std::span<SampleResult> results);
+  void shade_hits(std::span<const EyeSample> samples, std::span<SampleResult> results);
+  void emit_lights(std::size_t first_light, std::size_t last_light, std::span<const EyeSample> samples);
+  void answer_shadows(std::span<const EyeSample> samples, std::span<SampleResult> results);
+  void follow_transparent(std::span<const EyeSample> samples, std::span<SampleResult> results);
+  void combine_lights();
+  void spawn(Shade& shade);
+  void finish(std::uint32_t node, std::span<SampleResult> results);
+
+  const ShadingScene& scene_;
+  TraceScratch scratch_;
+  ShadingCounts counts_;
+  TreeObserver* observer_ = nullptr;
+  std::size_t batch_ = 64;
+
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> free_;
+  std::vector<std::uint32_t> pending_;       ///< a stack
+  std::vector<std::uint32_t> batch_nodes_;
+  std::vector<NearestQuery> nearest_queries_;
+  std::vector<NearestAnswer> nearest_answers_;
+  std::vector<Shade> shades_;
+  std::size_t shade_count_ = 0;
+  std::vector<PendingLight> lights_;
+  std::vector<OcclusionQuery> shadow_queries_;
+  std::vector<OcclusionAnswer> shadow_answers_;
+  std::vector<std::uint32_t> shadow_owner_;  ///< index in lights_ of each shadow query
+  std::vector<Walk> walks_;
+};
+
+}  // namespace rayshade
