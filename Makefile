@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+# The front door. `make help` lists the targets; every target first installs the Debian packages it lacks.
+
+BUILD   ?= build
+JOBS    ?= $(shell nproc)
+PREFIX  ?= /usr/local
+SUDO    := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
+
+# What the program is built from, and what only the tests and the extras need.
+PACKAGES       := g++ cmake ninja-build flex bison pkg-config libpng-dev zlib1g-dev libfmt-dev libsleef-dev \
+                  librandom123-dev libopenexr-dev
+TEST_PACKAGES  := libgtest-dev libgmock-dev nlohmann-json3-dev man-db groff-base
+BENCH_PACKAGES := libbenchmark-dev time
+LINT_PACKAGES  := clang clang-tidy clang-format libclang-rt-14-dev
+
+.DEFAULT_GOAL := help
+.PHONY: help run build check check-long asan tsan bench install package lint format fuzz clean \
+        packages test-packages bench-packages lint-packages
+
+help: ## list the targets
+	@echo "rayshade: a ray tracer for Rayshade 4.0 scenes"
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
+
+# $(call need,PACKAGES): installs those that are missing, and asks for no password where nothing is.
+define need
+	@missing=""; for p in $(1); do \
+	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'install ok installed' || missing="$$missing $$p"; done; \
+	if [ -n "$$missing" ]; then echo "installing:$$missing"; \
+	  $(SUDO) apt-get update -q && DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y -q --no-install-recommends $$missing; fi
+endef
+
+packages:
+	$(call need,$(PACKAGES))
+test-packages:
+	$(call need,$(PACKAGES) $(TEST_PACKAGES))
+bench-packages:
+	$(call need,$(PACKAGES) $(BENCH_PACKAGES))
+lint-packages:
+	$(call need,$(PACKAGES) $(TEST_PACKAGES) $(LINT_PACKAGES))
+
+build: packages ## build the programs into build/bin
+	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DCMAKE_INSTALL_PREFIX=$(PREFIX)
+	cmake --build $(BUILD) -j $(JOBS) --target rayshade spd
+
+run: build ## build, render a scene to a PNG and say where it is
+	cd scenes && ../$(BUILD)/bin/rayshade -O ../hero.png hero.ray
+	@echo; echo "The picture is $(CURDIR)/hero.png"
+
+check: test-packages ## build everything and run all tests
+	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=ON -DCMAKE_INSTALL_PREFIX=$(PREFIX)
+	cmake --build $(BUILD) -j $(JOBS)
+	ctest --test-dir $(BUILD) -j $(JOBS) -LE long --output-on-failure
+
+check-long: test-packages ## the tests that take longer, too
+	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=ON
+	cmake --build $(BUILD) -j $(JOBS)
+	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
+
+asan: test-packages ## the tests under the address and undefined-behaviour sanitizers
+	cmake --preset asan && cmake --build --preset asan -j $(JOBS)
+	ctest --test-dir build-asan -j $(JOBS) -LE 'long|timing' --output-on-failure
+
+tsan: test-packages ## the tests under the thread sanitizer
+	cmake --preset tsan && cmake --build --preset tsan -j $(JOBS)
+	ctest --test-dir build-tsan -j $(JOBS) -LE 'long|timing' --output-on-failure
+
+bench: bench-packages ## run the benchmarks (speed as ratios within one run)
+	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_BENCH=ON
+	cmake --build $(BUILD) -j $(JOBS)
+	bench/run $(BUILD)
+
+install: build ## install programs, scenes, manuals and completion under PREFIX
+	$(SUDO) cmake --install $(BUILD) --prefix $(PREFIX)
+
+package: packages ## build a Debian package in build/
+	$(call need,dpkg-dev lintian)
+	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DCMAKE_INSTALL_PREFIX=/usr
+	cmake --build $(BUILD) -j $(JOBS) --target rayshade spd
+	cd $(BUILD) && cpack -G DEB
+	@ls -l $(BUILD)/*.deb
+
+lint: lint-packages ## clang-format, clang-tidy, manual pages
+	clang-format --dry-run -Werror $$(git ls-files '*.cpp' '*.h')
+	cmake -S . -B build-lint -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release
+	cmake --build build-lint -j $(JOBS)
+	run-clang-tidy -p build-lint -quiet -j $(JOBS) '$(CURDIR)/(rayshade|scenes)/.*'
+
+format: lint-packages ## format all sources
+	clang-format -i $$(git ls-files '*.cpp' '*.h')
+
+fuzz: lint-packages ## fuzz the language for ten minutes
+	cmake -S . -B build-fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DRAYSHADE_FUZZ=ON -DCMAKE_BUILD_TYPE=Release
+	cmake --build build-fuzz -j $(JOBS) --target parse_fuzz
+	mkdir -p build-fuzz/corpus
+	build-fuzz/bin/parse_fuzz -max_total_time=600 -timeout=10 -rss_limit_mb=2048 build-fuzz/corpus tests/fuzz/corpus
+
+clean: ## remove what was built
+	rm -rf build build-*
