@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// The height field (objects.md 5): n x n altitudes over the unit square, two triangles per cell.
+//
+// A ray is taken into grid coordinates, where vertex (i, j) has x = i and y = j exactly, and descends a
+// pyramid of altitude ranges from front to back. Triangles are tested with edge functions of vertices
+// projected along the ray; an edge has the same value, bit for bit and with exact sign, in both of its
+// triangles, so that nothing leaks between neighbours. The hit distance is clamped into the ray's stay in the
+// cell, so that the order of the descent cannot change which triangle is nearest.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "rayshade/geometry/ray.h"
+#include "rayshade/math/bounds.h"
+
+namespace rayshade {
+
+/// Altitudes, row by row: sample number i is at x = (i mod n) / (n - 1), y = (i div n) / (n - 1). Values that
+/// are not above -1000 are unset; triangles with an unset vertex do not exist (objects.md 5.3).
+struct HeightFieldData {
+  int n = 0;
+  std::vector<float> z;
+};
+
+class HeightField {
+ public:
+  /// Builds the pyramid. Throws std::invalid_argument where n < 2 or z does not hold n * n values, and
+  /// std::length_error where the triangles cannot be numbered with 32 bits (n > 46341).
+  explicit HeightField(std::shared_ptr<const HeightFieldData> data);
+
+  /// The nearest t >= lo with t <= hi. hit.part: 2 * (row * (n - 1) + column), plus 1 for the upper right
+  /// triangle; hit.a, hit.b: coordinates within the cell, 0 to 1.
+  bool intersect(const Ray& ray, double lo, double hi, ShapeHit& hit) const;
+  SurfacePoint surface_point(const Ray& ray, const ShapeHit& hit) const;
+  /// From above.
+  bool entering(const Ray& ray, double lo, const ShapeHit& hit) const;
+  TextureCoordinates texture_coordinates(const Vec3& x, const Vec3& facing_normal, const ShapeHit& hit) const;
+  /// Empty where no triangle exists.
+  Bounds3 bounds() const { return bounds_; }
+
+  const HeightFieldData& data() const { return *data_; }
+
+ private:
+  struct Range {
+    float lo, hi;  ///< lo > hi: nothing there
+  };
+  /// Ranges of the squares of 2^k x 2^k cells, row by row; k starts at 1.
+  struct Level {
+    std::uint32_t width;
+    std::vector<Range> ranges;
+  };
+  struct Walk;
+
+  float altitude(std::uint32_t i, std::uint32_t j) const;
+  Range cell_range(std::uint32_t i, std::uint32_t j) const;
+  void test_cell(Walk& walk, std::uint32_t i, std::uint32_t j, double near, double far) const;
+  /// Altitude at the triangle's corner of the cell, and its slopes per cell along x and y.
+  struct Slope {
+    double z, x, y;
+    double corner_i, corner_j;
+  };
+  Slope slope(std::uint32_t part) const;
+
+  std::shared_ptr<const HeightFieldData> data_;
+  std::uint32_t n_, cells_;
+  std::vector<Level> levels_;
+  Bounds3 bounds_;
+};
+
+}  // namespace rayshade
