@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Textures made ready for rays, once per scene: files read, constants computed, transforms inverted. Only
+// texture lists that something in the compiled scene wears are prepared; a file is read once however often it
+// is named. Immutable afterwards, so threads share it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "rayshade/geometry/compiled_scene.h"
+#include "rayshade/scene/provider.h"
+#include "rayshade/texture/image_texture.h"
+#include "rayshade/texture/mapping.h"
+#include "rayshade/texture/procedural.h"
+
+namespace rayshade {
+
+/// A texture that cannot be used: a file that cannot be read, an image with the wrong channels, a degenerate
+/// mapping.
+struct TextureError : std::runtime_error {
+  TextureError(const std::string& what, Location where) : std::runtime_error(what), location(where) {}
+  Location location;
+};
+
+/// The 256 colours of a colour map file.
+using ColorTable = std::vector<Color>;
+
+/// One texture of a list.
+struct CompiledTexture {
+  const Texture* source = nullptr;
+  bool transformed = false;             ///< it has a transform
+  bool animated = false;                ///< which varies with time, so that `transform` is not used
+  AffinePair transform;                 ///< texture space -> model space
+  FbmParameters fbm;                    ///< fbm, fbmbump, cloud, sky
+  CompiledMapping mapping;              ///< stripe, image
+  const ColorTable* colors = nullptr;   ///< marble, fbm, mount; null without a map
+  const TextureImage* image = nullptr;  ///< image
+  bool needs_frame = false;             ///< it asks for the map from the primitive to its own level
+  bool changes_transmission = false;    ///< it may change transparency, body or extinction
+};
+
+struct CompiledTextureList {
+  std::vector<CompiledTexture> textures;
+  bool needs_frame = false;  ///< some texture of the list does
+  bool changes_transmission = false;
+};
+
+class CompiledTextures {
+ public:
+  CompiledTextures() = default;
+  /// Throws TextureError. `scene` must outlive this.
+  CompiledTextures(const CompiledScene& scene, Provider& provider);
+  CompiledTextures(CompiledTextures&&) = default;
+  CompiledTextures& operator=(CompiledTextures&&) = default;
+
+  /// The list of that index in Scene::texture_lists; it must be worn by a path node.
+  const CompiledTextureList& list(std::uint32_t texture_list) const { return lists_[texture_list]; }
+  /// Bytes of images and colour maps, for the statistics.
+  std::uint64_t bytes() const { return bytes_; }
+  /// Files read.
+  std::size_t files() const { return color_tables_.size() + images_.size(); }
+
+ private:
+  std::vector<CompiledTextureList> lists_;
+  std::vector<std::unique_ptr<ColorTable>> color_tables_;
+  std::vector<std::unique_ptr<TextureImage>> images_;
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace rayshade
