@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// Reading the files of textures and computing their constants.
+#include "rayshade/texture/compiled_textures.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "rayshade/image/color_map.h"
+#include "rayshade/image/reader.h"
+
+namespace rayshade {
+namespace {
+
+/// The files read so far, by name.
+template <typename File>
+using FileIndex = std::map<std::string, const File*>;
+
+/// Whether a texture may change what passes through a surface.
+bool changes_transmission(const Texture& texture) {
+  switch (texture.kind) {
+    case TextureKind::kChecker:
+    case TextureKind::kBlotch:
+    case TextureKind::kStripe:
+    case TextureKind::kSky:
+    case TextureKind::kCloud:
+      return true;
+    case TextureKind::kImage:
+      switch (texture.image.component) {
+        case ImageComponent::kColor:
+          return texture.image.has_surface;
+        case ImageComponent::kBody:
+        case ImageComponent::kTransp:
+          return true;
+        default:
+          return false;
+      }
+    default:
+      return false;
+  }
+}
+
+/// Whether a texture asks for the map from the primitive to its own level: uv mapping and tangents do.
+bool needs_frame(const Texture& texture) {
+  if (texture.kind == TextureKind::kStripe) return true;
+  if (texture.kind != TextureKind::kImage) return false;
+  return texture.mapping.kind == MappingKind::kUv || texture.image.component == ImageComponent::kBump;
+}
+
+/// H and lambda of the textures that sum fBm.
+FbmParameters fbm_parameters(const Texture& texture) {
+  const double* a = texture.arguments;
+  switch (texture.kind) {
+    case TextureKind::kFbm:
+    case TextureKind::kFbmBump:
+      return {fbm_omega(a[2], a[3]), a[3], texture.octaves};
+    case TextureKind::kCloud:
+    case TextureKind::kSky:
+      return {fbm_omega(a[1], a[2]), a[2], texture.octaves};
+    default:
+      return {};
+  }
+}
+
+bool uses_color_table(TextureKind kind) {
+  return kind == TextureKind::kMarble || kind == TextureKind::kFbm || kind == TextureKind::kMount;
+}
+
+void check_channels(const TextureImage& image, const Texture& texture) {
+  const ImageComponent component = texture.image.component;
+  if (component_takes(component, image.channels())) return;
+  throw TextureError(fmt::format("Image {} must have {}", texture.file.name,
+                                 component_takes(component, 3) ? "1 or 3 channels" : "1 channel"),
+                     texture.file.location);
+}
+
+}  // namespace
+
+CompiledTextures::CompiledTextures(const CompiledScene& compiled, Provider& provider) {
+  const Scene& scene = *compiled.scene;
+  FileIndex<ColorTable> tables;
+  FileIndex<TextureImage> images;
+
+  const auto color_table = [&](const FileReference& file) {
+    const ColorTable*& entry = tables[file.name];
+    if (!entry) {
+      color_tables_.push_back(std::make_unique<ColorTable>(load_color_table(file, provider)));
+      entry = color_tables_.back().get();
+      bytes_ += entry->size() * sizeof(Color);
+    }
+    return entry;
+  };
+  const auto image = [&](const FileReference& file) {
+    const TextureImage*& entry = images[file.name];
+    if (!entry) {
+      images_.push_back(std::make_unique<TextureImage>(load_image(file, provider)));
+      entry = images_.back().get();
+      bytes_ += entry->bytes();
+    }
+    return entry;
+  };
+  const auto compile = [&](const Texture& source) {
+    CompiledTexture texture;
+    texture.source = &source;
+    texture.transformed = !source.transform.empty();
+    texture.animated = source.transform.animated();
+    if (texture.transformed && !texture.animated) {
+      texture.transform.forward = source.transform.at({});
+      const auto inverted = inverse(texture.transform.forward);
+      if (!inverted) throw TextureError("Singular matrix.", source.location);
+      texture.transform.inverse = *inverted;
+    }
+    texture.fbm = fbm_parameters(source);
+    texture.needs_frame = needs_frame(source);
+    texture.changes_transmission = changes_transmission(source);
+    try {
+      texture.mapping = CompiledMapping(source.mapping);
+    } catch (const DegenerateMapping& error) {
+      throw TextureError(error.what(), source.location);
+    }
+    if (uses_color_table(source.kind) && source.file.given()) texture.colors = color_table(source.file);
+    if (source.kind == TextureKind::kMount && !texture.colors) {
+      throw TextureError("Texture mount needs a colormap file.", source.location);
+    }
+    if (source.kind == TextureKind::kImage) {
+      texture.image = image(source.file);
+      check_channels(*texture.image, source);
+    }
+    return texture;
+  };
+
+  lists_.resize(scene.texture_lists.size());
+  std::vector<bool> done(lists_.size());
+  for (const PathNode& node : compiled.path_nodes) {
+    if (node.textures == kNone || done[node.textures]) continue;
+    done[node.textures] = true;
+    CompiledTextureList& list = lists_[node.textures];
+    for (const Texture& source : scene.texture_lists[node.textures]) {
+      list.textures.push_back(compile(source));
+      list.needs_frame = list.needs_frame || list.textures.back().needs_frame;
+      list.changes_transmission = list.changes_transmission || list.textures.back().changes_transmission;
+    }
+  }
+}
+
+}  // namespace rayshade
