@@ -22,6 +22,19 @@ bool is_black(const Color& c) { return c.r == 0 && c.g == 0 && c.b == 0; }
 
 enum Slot : std::uint8_t { kTransmittedSlot = 0, kReflectedSlot = 1 };
 
+/// The uniforms of gloss textures at one hit, addressed by the path of its ray (rule 6).
+class Gloss final : public GlossDraws {
+ public:
+  Gloss(const RandomKey& key, std::uint64_t path) : key_(key), path_(path) {}
+  std::array<double, 2> operator()(unsigned nth) const override {
+    return uniform2(key_, dimension(path_, Purpose::kGloss, nth));
+  }
+
+ private:
+  RandomKey key_;
+  std::uint64_t path_;
+};
+
 }  // namespace
 
 /// A ray of the tree, from its birth until its colour has gone to its parent.
@@ -140,7 +153,7 @@ void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResu
     const std::size_t run = std::max<std::size_t>(1, kQueriesPerRun / shade_count_);
     for (std::size_t first = 0; first < lights; first += run) {
       emit_lights(first, std::min(first + run, lights), samples);
-      answer_shadows(samples, results);
+      answer_shadows(results);
       combine_lights();
     }
   }
@@ -175,8 +188,8 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
     Shade& shade = shades_[shade_count_++];
     shade.node = id;
     const EyeSample& sample = samples[node.root];
-    const SampleContext context{sample.sample_number, scene_.settings->samples,
-                                {scene_.settings->seed, scene_.frame, sample.x, sample.y, sample.sample, node.path}};
+    const Gloss gloss({scene_.settings->seed, scene_.frame, sample.x, sample.y, sample.sample}, node.path);
+    const SampleContext context{sample.sample_number, scene_.settings->samples, &gloss};
     evaluate_hit(*scene_.compiled, *scene_.textures, answer.hit, node.ray, context, scratch_, shade.hit);
     const WorldHit& world = shade.hit.world;
     shade.extent = world_extent(*scene_.compiled, answer.hit);
@@ -270,7 +283,7 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light, std::
   }
 }
 
-void RayTree::answer_shadows(std::span<const EyeSample> samples, std::span<SampleResult> results) {
+void RayTree::answer_shadows(std::span<SampleResult> results) {
   if (shadow_queries_.empty()) return;
   if (shadow_answers_.size() < shadow_queries_.size()) shadow_answers_.resize(shadow_queries_.size());
   const std::span<OcclusionAnswer> answers(shadow_answers_.data(), shadow_queries_.size());
@@ -283,11 +296,11 @@ void RayTree::answer_shadows(std::span<const EyeSample> samples, std::span<Sampl
     pending.blocked = answers[i].occluded;
     if (pending.blocked) ++counts_.shadow_hits;
   }
-  if (scene_.settings->transparent_shadows && scene_.compiled->has_transparent) follow_transparent(samples, results);
+  if (scene_.settings->transparent_shadows && scene_.compiled->has_transparent) follow_transparent(results);
 }
 
 /// The ordered walk of shading.md 5.3, for the shadow rays that no opaque leaf stopped.
-void RayTree::follow_transparent(std::span<const EyeSample> samples, std::span<SampleResult> results) {
+void RayTree::follow_transparent(std::span<SampleResult> results) {
   walks_.clear();
   for (std::uint32_t i = 0; i < shadow_queries_.size(); ++i) {
     if (!lights_[shadow_owner_[i]].blocked) walks_.push_back({shadow_owner_[i], i, shadow_queries_[i].lo, false, 1, 0});
@@ -322,11 +335,8 @@ void RayTree::follow_transparent(std::span<const EyeSample> samples, std::span<S
       if (walk.in_medium && walk.extinction != 1) {
         pending.color *= fn::pow(walk.extinction, hit.t() - walk.near);
       }
-      const EyeSample& sample = samples[node.root];
-      const SampleContext context{sample.sample_number, scene_.settings->samples,
-                                  {scene_.settings->seed, scene_.frame, sample.x, sample.y, sample.sample, node.path}};
-      const Transmittance through = evaluate_transmittance(*scene_.compiled, *scene_.textures, hit, queries[i].ray,
-                                                           context, scratch_);
+      const Transmittance through =
+          evaluate_transmittance(*scene_.compiled, *scene_.textures, hit, queries[i].ray, scratch_);
       pending.color *= through.color;
       walk.in_medium = through.entering;
       walk.extinction = through.extinction;

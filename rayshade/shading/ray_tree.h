@@ -103,8 +103,8 @@ class RayTree {
   void run_batch(std::span<const EyeSample> samples, std::span<SampleResult> results);
   void shade_hits(std::span<const EyeSample> samples, std::span<SampleResult> results);
   void emit_lights(std::size_t first_light, std::size_t last_light, std::span<const EyeSample> samples);
-  void answer_shadows(std::span<const EyeSample> samples, std::span<SampleResult> results);
-  void follow_transparent(std::span<const EyeSample> samples, std::span<SampleResult> results);
+  void answer_shadows(std::span<SampleResult> results);
+  void follow_transparent(std::span<SampleResult> results);
   void combine_lights();
   void spawn(Shade& shade);
   void finish(std::uint32_t node, std::span<SampleResult> results);

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "rayshade/render/block_renderer.h"
+
+#include <chrono>
+#include <limits>
+
+#include "rayshade/sampling/random.h"
+
+namespace rayshade {
+namespace {
+
+/// Samples traced together: enough to fill spans of queries, few enough to stay in cache.
+constexpr std::size_t kChunk = 1024;
+
+void note_layer(const SampleResult& result, const CompiledScene& scene, BlockPixels::Layer& layer) {
+  layer.depth = result.hit ? static_cast<float>(result.distance) : std::numeric_limits<float>::infinity();
+  for (int axis = 0; axis < 3; ++axis) layer.normal[axis] = result.hit ? static_cast<float>(result.normal[axis]) : 0.0f;
+  layer.object = result.hit ? static_cast<float>(scene.leaves[result.leaf].path + 1) : 0.0f;
+}
+
+}  // namespace
+
+BlockRenderer::BlockRenderer(const FrameScene& frame) : frame_(frame), tree_(frame.shading) {}
+
+/// The one sample of a pixel that is not fully sampled (shading.md 7.3).
+int BlockRenderer::chosen_sample(int x, int y) const {
+  const int count = frame_.grid->count();
+  if (count == 1) return 0;
+  const RandomKey key{frame_.shading.settings->seed, frame_.shading.frame, static_cast<std::uint32_t>(x),
+                      static_cast<std::uint32_t>(y), 0};
+  return std::min(count - 1, static_cast<int>(uniform(key, dimension(0, Purpose::kSampleChoice)) * count));
+}
+
+EyeSample BlockRenderer::eye_sample(int x, int y, int k) const {
+  const RenderSettings& settings = *frame_.shading.settings;
+  EyeSample out;
+  out.x = static_cast<std::uint32_t>(x);
+  out.y = static_cast<std::uint32_t>(y);
+  out.sample = static_cast<std::uint32_t>(k);
+  out.sample_number = frame_.grid->sample_number(k);
+  const RandomKey key{settings.seed, frame_.shading.frame, out.x, out.y, out.sample};
+  std::array<double, 2> jitter{};
+  if (settings.jitter) jitter = uniform2(key, dimension(0, Purpose::kPixel));
+  const auto offset = frame_.grid->offset(k, jitter[0], jitter[1]);
+  const double u = x + offset[0], v = y + offset[1];
+  if (frame_.camera->has_lens()) {
+    const auto lens = uniform2(key, dimension(0, Purpose::kLens));
+    out.ray = frame_.camera->lens_ray(u, v, out.sample_number, lens[0], lens[1]);
+  } else {
+    out.ray = frame_.camera->ray(u, v);
+  }
+  const double xi = settings.jitter && settings.shutter > 0 ? uniform(key, dimension(0, Purpose::kTime)) : 0.0;
+  out.ray.time = frame_.camera->time(frame_.shading.frame, out.sample_number, xi);
+  return out;
+}
+
+void BlockRenderer::trace_range(std::size_t first, std::size_t count) {
+  tree_.trace(std::span(samples_).subspan(first, count), std::span(results_).subspan(first, count));
+}
+
+/// Traces samples_ into results_; one by one and timed where costs are wanted.
+void BlockRenderer::trace_samples() {
+  results_.resize(samples_.size());
+  if (!frame_.cost) {
+    trace_range(0, samples_.size());
+    return;
+  }
+  microseconds_.resize(samples_.size());
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    trace_range(i, 1);
+    microseconds_[i] = std::chrono::duration<float, std::micro>(std::chrono::steady_clock::now() - start).count();
+  }
+}
+
+void BlockRenderer::render_single(const PixelRect& rect) {
+  samples_.clear();
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    for (int x = rect.x0; x < rect.x1; ++x) samples_.push_back(eye_sample(x, y, chosen_sample(x, y)));
+  }
+  trace_samples();
+}
+
+void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
+  const RenderSettings& settings = *frame_.shading.settings;
+  const CompiledScene& compiled = *frame_.shading.compiled;
+  const bool layered = frame_.layers || frame_.cost;
+  const std::size_t pixels = static_cast<std::size_t>(rect.width()) * rect.height();
+  out.rect = rect;
+  out.pixels.assign(pixels, {});
+  out.layers.assign(layered ? pixels : 0, {});
+  ++counts_.blocks;
+  counts_.pixels += pixels;
+
+  // Single samples, with the halo that refinement looks at.
+  const bool refine = frame_.grid->count() > 1;
+  const PixelRect outer = refine ? halo(rect, kRefinementReach, settings.width, settings.height) : rect;
+  render_single(outer);
+  const std::vector<SampleResult> single(std::move(results_));
+  const std::vector<float> single_time(std::move(microseconds_));
+  results_ = {};
+  microseconds_ = {};
+  counts_.halo_samples += single.size() - pixels;
+  const auto outer_index = [&](int x, int y) {
+    return static_cast<std::size_t>(y - outer.y0) * outer.width() + (x - outer.x0);
+  };
+  std::vector<bool> full;
+  if (refine) {
+    std::vector<Color> colors(single.size());
+    for (std::size_t i = 0; i < single.size(); ++i) colors[i] = single[i].color;
+    full = choose_full(rect, colors, settings.contrast, settings.width, settings.height);
+  }
+
+  std::size_t index = 0;
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    for (int x = rect.x0; x < rect.x1; ++x, ++index) {
+      const std::size_t i = outer_index(x, y);
+      const SampleResult& one = single[i];
+      BlockPixels::Pixel& pixel = out.pixels[index];
+      pixel = {one.color, one.hit ? 1.0 : 0.0};
+      if (layered) {
+        BlockPixels::Layer& layer = out.layers[index];
+        note_layer(one, compiled, layer);
+        layer.samples = 1;
+        layer.tests = static_cast<float>(one.tests);
+        layer.bounds_tests = static_cast<float>(one.bounds_tests);
+        if (frame_.cost) layer.microseconds = single_time[i];
+      }
+    }
+  }
+  if (!refine) {
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      for (int x = rect.x0; x < rect.x1; ++x) {
+        counts_.supersampled += x == 0 || y == 0 || x == settings.width - 1 || y == settings.height - 1;
+      }
+    }
+    return;
+  }
+
+  // The other samples of the pixels that need them, in chunks of whole pixels.
+  const int count = frame_.grid->count();
+  std::vector<std::size_t> chosen;
+  const auto flush = [&] {
+    trace_samples();
+    const SampleResult* result = results_.data();
+    const float* time = microseconds_.data();
+    for (const std::size_t p : chosen) {
+      const int x = rect.x0 + static_cast<int>(p % static_cast<std::size_t>(rect.width()));
+      const int y = rect.y0 + static_cast<int>(p / static_cast<std::size_t>(rect.width()));
+      const int reused = chosen_sample(x, y);
+      const SampleResult& one = single[outer_index(x, y)];
+      BlockPixels::Pixel sum;
+      for (int k = 0; k < count; ++k) {
+        const SampleResult& sample = k == reused ? one : *result++;
+        const double weight = frame_.grid->weight(k);
+        sum.color += weight * sample.color;
+        sum.alpha += sample.hit ? weight : 0.0;
+        if (!layered || k == reused) continue;
+        out.layers[p].tests += static_cast<float>(sample.tests);
+        out.layers[p].bounds_tests += static_cast<float>(sample.bounds_tests);
+        if (frame_.cost) out.layers[p].microseconds += *time++;
+      }
+      out.pixels[p] = sum;
+      if (layered) out.layers[p].samples = static_cast<float>(count);
+    }
+    samples_.clear();
+    chosen.clear();
+  };
+  samples_.clear();
+  for (std::size_t p = 0; p < pixels; ++p) {
+    if (!full[p]) continue;
+    ++counts_.supersampled;
+    chosen.push_back(p);
+    const int x = rect.x0 + static_cast<int>(p % static_cast<std::size_t>(rect.width()));
+    const int y = rect.y0 + static_cast<int>(p / static_cast<std::size_t>(rect.width()));
+    const int reused = chosen_sample(x, y);
+    for (int k = 0; k < count; ++k) {
+      if (k != reused) samples_.push_back(eye_sample(x, y, k));
+    }
+    if (samples_.size() >= kChunk) flush();
+  }
+  if (!chosen.empty()) flush();
+}
+
+void BlockRenderer::observe(int x, int y, TreeObserver& observer) {
+  tree_.set_observer(&observer);
+  samples_.clear();
+  if (frame_.grid->count() == 1) {
+    samples_.push_back(eye_sample(x, y, 0));
+  } else {
+    samples_.push_back(eye_sample(x, y, chosen_sample(x, y)));
+  }
+  trace_samples();
+  tree_.set_observer(nullptr);
+}
+
+}  // namespace rayshade

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Blocks in, pixels out: sampling, refinement and filtering of one rectangle of the screen (shading.md 7).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "rayshade/render/statistics.h"
+#include "rayshade/sampling/camera.h"
+#include "rayshade/sampling/grid.h"
+#include "rayshade/sampling/refine.h"
+#include "rayshade/shading/ray_tree.h"
+
+namespace rayshade {
+
+/// What all threads share while a frame is rendered.
+struct FrameScene {
+  ShadingScene shading;
+  const Camera* camera = nullptr;
+  const SampleGrid* grid = nullptr;
+  bool layers = false;              ///< depth, normal, object and samples are wanted
+  bool cost = false;                ///< tests and time per pixel are wanted
+};
+
+/// Finished pixels of a rectangle, row by row.
+struct BlockPixels {
+  PixelRect rect;
+  struct Pixel {
+    Color color;
+    double alpha = 0;
+  };
+  struct Layer {
+    float depth = 0;                ///< distance of the first sample's hit; infinite where nothing was hit
+    float normal[3] = {0, 0, 0};
+    float object = 0;               ///< number of the object's node, from 1; 0 where nothing was hit
+    float samples = 0;
+    float tests = 0;                ///< exact tests and bounds tests of all rays of the pixel
+    float bounds_tests = 0;
+    float microseconds = 0;
+  };
+  std::vector<Pixel> pixels;
+  std::vector<Layer> layers;        ///< empty unless layers or cost are wanted
+};
+
+/// Renders blocks; one per thread. The pixels of a rectangle are a function of the frame and the rectangle's pixels
+/// alone, whatever rectangle they are part of.
+class BlockRenderer {
+ public:
+  explicit BlockRenderer(const FrameScene& frame);
+  /// `rect` in screen coordinates, within the screen.
+  void render(const PixelRect& rect, BlockPixels& out);
+  /// The tree of every sample of one pixel, told to the observer.
+  void observe(int x, int y, TreeObserver& observer);
+
+  RayTree& tree() { return tree_; }
+  const SamplingCounts& counts() const { return counts_; }
+
+ private:
+  EyeSample eye_sample(int x, int y, int k) const;
+  int chosen_sample(int x, int y) const;
+  void trace_range(std::size_t first, std::size_t count);
+  void trace_samples();
+  void render_single(const PixelRect& rect);
+
+  const FrameScene& frame_;
+  RayTree tree_;
+  SamplingCounts counts_;
+  std::vector<EyeSample> samples_;
+  std::vector<SampleResult> results_;
+  std::vector<float> microseconds_;         ///< per sample, when costs are wanted
+};
+
+}  // namespace rayshade
