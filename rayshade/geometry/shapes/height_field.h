@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The height field (objects.md 5): n x n altitudes over the unit square, two triangles per cell.
+// The height field (objects.md 5): n x n altitudes over the unit square, two triangles per cell; triangles
+// with an unset corner do not exist.
 //
 // A ray is taken into grid coordinates, where vertex (i, j) has x = i and y = j exactly, and descends a
 // pyramid of altitude ranges from front to back. Triangles are tested with edge functions of vertices
@@ -13,21 +14,16 @@
 #include <vector>
 
 #include "rayshade/geometry/ray.h"
+#include "rayshade/image/height_field_file.h"
 #include "rayshade/math/bounds.h"
 
 namespace rayshade {
 
-/// Altitudes, row by row: sample number i is at x = (i mod n) / (n - 1), y = (i div n) / (n - 1). Values that
-/// are not above -1000 are unset; triangles with an unset vertex do not exist (objects.md 5.3).
-struct HeightFieldData {
-  int n = 0;
-  std::vector<float> z;
-};
-
 class HeightField {
  public:
-  /// Builds the pyramid. Throws std::invalid_argument where n < 2 or z does not hold n * n values, and
-  /// std::length_error where the triangles cannot be numbered with 32 bits (n > 46341).
+  /// Builds the pyramid. Throws std::invalid_argument where there are fewer than 2 x 2 points or not as many
+  /// as `size` says, and std::length_error where the triangles cannot be numbered with 32 bits (size >
+  /// 46341).
   explicit HeightField(std::shared_ptr<const HeightFieldData> data);
 
   /// The nearest t >= lo with t <= hi. hit.part: 2 * (row * (n - 1) + column), plus 1 for the upper right
