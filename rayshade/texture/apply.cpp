@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "rayshade/texture/image_texture.h"
 #include "rayshade/texture/noise.h"
 #include "rayshade/texture/procedural.h"
 #include "rayshade/texture/surface_ops.h"
@@ -135,19 +136,19 @@ void apply_gloss(const CompiledTexture& texture, Evaluation& e) {
 
 void apply_image(const CompiledTexture& texture, const TextureSpace& space, Evaluation& e) {
   const ImageOptions& options = texture.source->image;
-  const TextureImage& image = *texture.image;
+  const Image& image = *texture.image;
   TextureCoordinates c = map_point(texture, space, e);
   if (!tile_draws(c.u, c.v, options.tile_u, options.tile_v)) return;
-  const TextureImage::Position here = image.locate(c.u, c.v);
-  const Texel texel = image.at(here, options.smooth);
-  if (image.has_alpha() && texel.alpha < kInvisible) return;
+  const TexelPosition here = locate_texel(image, c.u, c.v);
+  const Texel texel = texel_at(image, here, options.smooth);
+  if (image.has_alpha && texel.alpha < kInvisible) return;
   if (options.component != ImageComponent::kBump) {
     apply_texel(texel, options, options.has_surface ? &texture.source->surface : nullptr, e.surface);
     return;
   }
   const double height = texel.color.r;
-  const double right = image.at(image.right_of(here), options.smooth).color.r;
-  const double above = image.at(image.above(here), options.smooth).color.r;
+  const double right = texel_at(image, texel_right_of(image, here), options.smooth).color.r;
+  const double above = texel_at(image, texel_above(image, here), options.smooth).color.r;
   const double low = options.range_low, span = options.range_high - options.range_low;
   finish_tangents(space, e, c);
   e.normal = make_bump(e.normal, c.du, c.dv, low + (right - height) * span, low + (above - height) * span);

@@ -6,8 +6,8 @@
 
 #include <map>
 
-#include "rayshade/image/color_map.h"
 #include "rayshade/image/reader.h"
+#include "rayshade/texture/image_texture.h"
 
 namespace rayshade {
 namespace {
@@ -62,13 +62,46 @@ FbmParameters fbm_parameters(const Texture& texture) {
   }
 }
 
-bool uses_color_table(TextureKind kind) {
+bool uses_color_map(TextureKind kind) {
   return kind == TextureKind::kMarble || kind == TextureKind::kFbm || kind == TextureKind::kMount;
 }
 
-void check_channels(const TextureImage& image, const Texture& texture) {
+/// The content of a file; `what` says what it is good for.
+Bytes read_file(const FileReference& file, std::string_view what, Provider& provider) {
+  try {
+    return provider.read(file.name);
+  } catch (const ProviderError& error) {
+    throw TextureError(fmt::format("Cannot open {} file \"{}\": {}.", what, file.name, error.what()),
+                       file.location);
+  }
+}
+
+ColorMap load_color_map(const FileReference& file, Provider& provider) {
+  const Bytes text = read_file(file, "colormap", provider);
+  try {
+    return read_color_map(*text);
+  } catch (const ColorMapError& error) {
+    throw TextureError(fmt::format("{}, {}", file.name, error.what()), file.location);
+  }
+}
+
+Image load_image(const FileReference& file, Provider& provider) {
+  const Bytes bytes = read_file(file, "image", provider);
+  try {
+    return read_image(*bytes);
+  } catch (const ImageError& error) {
+    throw TextureError(fmt::format("Cannot read image \"{}\": {}.", file.name, error.what()), file.location);
+  }
+}
+
+std::uint64_t bytes_of(const Image& image) {
+  return image.bytes.size() + image.words.size() * sizeof(std::uint16_t) +
+         image.floats.size() * sizeof(float);
+}
+
+void check_channels(const Image& image, const Texture& texture) {
   const ImageComponent component = texture.image.component;
-  if (component_takes(component, image.channels())) return;
+  if (component_takes(component, image.channels)) return;
   throw TextureError(fmt::format("Image {} must have {}", texture.file.name,
                                  component_takes(component, 3) ? "1 or 3 channels" : "1 channel"),
                      texture.file.location);
@@ -78,24 +111,24 @@ void check_channels(const TextureImage& image, const Texture& texture) {
 
 CompiledTextures::CompiledTextures(const CompiledScene& compiled, Provider& provider) {
   const Scene& scene = *compiled.scene;
-  FileIndex<ColorTable> tables;
-  FileIndex<TextureImage> images;
+  FileIndex<ColorMap> tables;
+  FileIndex<Image> images;
 
-  const auto color_table = [&](const FileReference& file) {
-    const ColorTable*& entry = tables[file.name];
+  const auto color_map = [&](const FileReference& file) {
+    const ColorMap*& entry = tables[file.name];
     if (!entry) {
-      color_tables_.push_back(std::make_unique<ColorTable>(load_color_table(file, provider)));
-      entry = color_tables_.back().get();
+      color_maps_.push_back(std::make_unique<ColorMap>(load_color_map(file, provider)));
+      entry = color_maps_.back().get();
       bytes_ += entry->size() * sizeof(Color);
     }
     return entry;
   };
   const auto image = [&](const FileReference& file) {
-    const TextureImage*& entry = images[file.name];
+    const Image*& entry = images[file.name];
     if (!entry) {
-      images_.push_back(std::make_unique<TextureImage>(load_image(file, provider)));
+      images_.push_back(std::make_unique<Image>(load_image(file, provider)));
       entry = images_.back().get();
-      bytes_ += entry->bytes();
+      bytes_ += bytes_of(*entry);
     }
     return entry;
   };
@@ -118,7 +151,7 @@ CompiledTextures::CompiledTextures(const CompiledScene& compiled, Provider& prov
     } catch (const DegenerateMapping& error) {
       throw TextureError(error.what(), source.location);
     }
-    if (uses_color_table(source.kind) && source.file.given()) texture.colors = color_table(source.file);
+    if (uses_color_map(source.kind) && source.file.given()) texture.colors = color_map(source.file);
     if (source.kind == TextureKind::kMount && !texture.colors) {
       throw TextureError("Texture mount needs a colormap file.", source.location);
     }

@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "rayshade/geometry/compiled_scene.h"
+#include "rayshade/image/color_map.h"
+#include "rayshade/image/image.h"
 #include "rayshade/scene/provider.h"
-#include "rayshade/texture/image_texture.h"
 #include "rayshade/texture/mapping.h"
 #include "rayshade/texture/procedural.h"
 
@@ -26,21 +27,18 @@ struct TextureError : std::runtime_error {
   Location location;
 };
 
-/// The 256 colours of a colour map file.
-using ColorTable = std::vector<Color>;
-
 /// One texture of a list.
 struct CompiledTexture {
   const Texture* source = nullptr;
-  bool transformed = false;             ///< it has a transform
-  bool animated = false;                ///< which varies with time, so that `transform` is not used
-  AffinePair transform;                 ///< texture space -> model space
-  FbmParameters fbm;                    ///< fbm, fbmbump, cloud, sky
-  CompiledMapping mapping;              ///< stripe, image
-  const ColorTable* colors = nullptr;   ///< marble, fbm, mount; null without a map
-  const TextureImage* image = nullptr;  ///< image
-  bool needs_frame = false;             ///< it asks for the map from the primitive to its own level
-  bool changes_transmission = false;    ///< it may change transparency, body or extinction
+  bool transformed = false;           ///< it has a transform
+  bool animated = false;              ///< which varies with time, so that `transform` is not used
+  AffinePair transform;               ///< texture space -> model space
+  FbmParameters fbm;                  ///< fbm, fbmbump, cloud, sky
+  CompiledMapping mapping;            ///< stripe, image
+  const ColorMap* colors = nullptr;   ///< marble, fbm, mount; null without a map
+  const Image* image = nullptr;       ///< image
+  bool needs_frame = false;           ///< it asks for the map from the primitive to its own level
+  bool changes_transmission = false;  ///< it may change transparency, body or extinction
 };
 
 struct CompiledTextureList {
@@ -62,12 +60,12 @@ class CompiledTextures {
   /// Bytes of images and colour maps, for the statistics.
   std::uint64_t bytes() const { return bytes_; }
   /// Files read.
-  std::size_t files() const { return color_tables_.size() + images_.size(); }
+  std::size_t files() const { return color_maps_.size() + images_.size(); }
 
  private:
   std::vector<CompiledTextureList> lists_;
-  std::vector<std::unique_ptr<ColorTable>> color_tables_;
-  std::vector<std::unique_ptr<TextureImage>> images_;
+  std::vector<std::unique_ptr<ColorMap>> color_maps_;
+  std::vector<std::unique_ptr<Image>> images_;
   std::uint64_t bytes_ = 0;
 };
 

@@ -15,69 +15,53 @@ constexpr double kAlphaZero = 0.001;
 
 /// Pixel and fraction of a wrapped coordinate. Exactly 1, which a tiny negative coordinate wraps to, is the
 /// first pixel (textures.md D13), as is what is not finite.
-void locate_axis(double u, std::uint32_t size, std::uint32_t& pixel, double& fraction) {
-  const double scaled = (u - std::floor(u)) * size;
+void locate_axis(double u, std::int64_t size, std::int64_t& pixel, double& fraction) {
+  const double scaled = (u - std::floor(u)) * static_cast<double>(size);
   pixel = 0;
   fraction = 0;
-  if (!(scaled < size)) return;
-  pixel = static_cast<std::uint32_t>(scaled);
-  fraction = scaled - pixel;
+  if (!(scaled < static_cast<double>(size))) return;
+  pixel = static_cast<std::int64_t>(scaled);
+  fraction = scaled - static_cast<double>(pixel);
 }
 
-Texel weighted(const Texel& texel, double weight) { return {texel.color * weight, texel.alpha * weight}; }
+Texel pixel_of(const Image& image, std::int64_t x, std::int64_t y) {
+  const double first = image.value(x, y, 0);
+  if (image.channels != 3) return {{first, first, first}, image.alpha(x, y)};
+  return {{first, image.value(x, y, 1), image.value(x, y, 2)}, image.alpha(x, y)};
+}
 
-void add(Texel& sum, const Texel& texel) {
-  sum.color += texel.color;
-  sum.alpha += texel.alpha;
+void add_weighted(Texel& sum, const Texel& texel, double weight) {
+  sum.color += texel.color * weight;
+  sum.alpha += texel.alpha * weight;
 }
 
 }  // namespace
 
-TextureImage::TextureImage(std::uint32_t width, std::uint32_t height, int channels, bool has_alpha,
-                           int maximum, std::vector<std::uint16_t> samples)
-    : width_(width), height_(height), channels_(channels), has_alpha_(has_alpha), maximum_(maximum) {
-  if (maximum <= 255) {
-    narrow_.assign(samples.begin(), samples.end());
-  } else {
-    wide_ = std::move(samples);
-  }
-}
-
-TextureImage::Position TextureImage::locate(double u, double v) const {
-  Position p;
-  locate_axis(u, width_, p.x, p.fx);
-  locate_axis(v, height_, p.y, p.fy);
+TexelPosition locate_texel(const Image& image, double u, double v) {
+  TexelPosition p;
+  locate_axis(u, image.width, p.x, p.fx);
+  locate_axis(v, image.height, p.y, p.fy);
   return p;
 }
 
-TextureImage::Position TextureImage::right_of(Position p) const {
-  p.x = p.x + 1 == width_ ? 0 : p.x + 1;
-  return p;
+TexelPosition texel_right_of(const Image& image, TexelPosition position) {
+  position.x = position.x + 1 == image.width ? 0 : position.x + 1;
+  return position;
 }
 
-TextureImage::Position TextureImage::above(Position p) const {
-  p.y = p.y + 1 == height_ ? 0 : p.y + 1;
-  return p;
+TexelPosition texel_above(const Image& image, TexelPosition position) {
+  position.y = position.y + 1 == image.height ? 0 : position.y + 1;
+  return position;
 }
 
-Texel TextureImage::pixel(std::uint32_t x, std::uint32_t y) const {
-  const std::size_t stride = static_cast<std::size_t>(channels_) + (has_alpha_ ? 1 : 0);
-  const std::size_t first = (static_cast<std::size_t>(y) * width_ + x) * stride;
-  Texel texel;
-  texel.color.r = sample(first) / maximum_;
-  texel.color.g = channels_ == 3 ? sample(first + 1) / maximum_ : texel.color.r;
-  texel.color.b = channels_ == 3 ? sample(first + 2) / maximum_ : texel.color.r;
-  if (has_alpha_) texel.alpha = sample(first + stride - 1) / maximum_;
-  return texel;
-}
-
-Texel TextureImage::at(const Position& p, bool smooth) const {
-  if (!smooth) return pixel(p.x, p.y);
-  const Position right = right_of(p), up = above(p);
-  Texel sum = weighted(pixel(p.x, p.y), (1 - p.fx) * (1 - p.fy));
-  add(sum, weighted(pixel(right.x, p.y), p.fx * (1 - p.fy)));
-  add(sum, weighted(pixel(p.x, up.y), (1 - p.fx) * p.fy));
-  add(sum, weighted(pixel(right.x, up.y), p.fx * p.fy));
+Texel texel_at(const Image& image, const TexelPosition& p, bool smooth) {
+  if (!smooth) return pixel_of(image, p.x, p.y);
+  const std::int64_t right = texel_right_of(image, p).x, above = texel_above(image, p).y;
+  Texel sum{{}, 0};
+  add_weighted(sum, pixel_of(image, p.x, p.y), (1 - p.fx) * (1 - p.fy));
+  add_weighted(sum, pixel_of(image, right, p.y), p.fx * (1 - p.fy));
+  add_weighted(sum, pixel_of(image, p.x, above), (1 - p.fx) * p.fy);
+  add_weighted(sum, pixel_of(image, right, above), p.fx * p.fy);
   return sum;
 }
 

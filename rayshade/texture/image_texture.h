@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
+#include "rayshade/image/image.h"
 #include "rayshade/math/vec.h"
 #include "rayshade/scene/surface.h"
 #include "rayshade/scene/texture.h"
@@ -17,44 +17,20 @@ struct Texel {
   double alpha = 1;
 };
 
-/// A picture in memory. Row 0 belongs to v = 0, column 0 to u = 0; samples are code values in 0 .. maximum.
-class TextureImage {
- public:
-  /// `samples` holds height rows of width pixels of (channels + has_alpha) samples, alpha last. `channels` is
-  /// 1 or 3, width and height at least 1.
-  TextureImage(std::uint32_t width, std::uint32_t height, int channels, bool has_alpha, int maximum,
-               std::vector<std::uint16_t> samples);
-
-  std::uint32_t width() const { return width_; }
-  std::uint32_t height() const { return height_; }
-  int channels() const { return channels_; }
-  bool has_alpha() const { return has_alpha_; }
-  std::uint64_t bytes() const { return wide_.size() * 2 + narrow_.size(); }
-
-  /// A place in the picture: pixel, and fractions toward the next column and row.
-  struct Position {
-    std::uint32_t x = 0, y = 0;
-    double fx = 0, fy = 0;
-  };
-  /// Any u, v; the picture repeats with period 1.
-  Position locate(double u, double v) const;
-  /// Position of the next column (row), around the edge, with the same fractions.
-  Position right_of(Position p) const;
-  Position above(Position p) const;
-  /// The pixel, or with `smooth` the bilinear mean of it and its neighbours to the right and above.
-  Texel at(const Position& p, bool smooth) const;
-
- private:
-  Texel pixel(std::uint32_t x, std::uint32_t y) const;
-  double sample(std::size_t index) const { return narrow_.empty() ? wide_[index] : narrow_[index]; }
-
-  std::uint32_t width_, height_;
-  int channels_;
-  bool has_alpha_;
-  double maximum_;
-  std::vector<std::uint8_t> narrow_;  ///< when maximum is at most 255
-  std::vector<std::uint16_t> wide_;   ///< otherwise
+/// A place in a picture: pixel, and fractions toward the next column and row.
+struct TexelPosition {
+  std::int64_t x = 0, y = 0;
+  double fx = 0, fy = 0;
 };
+
+/// The place of any (u, v); the picture repeats with period 1.
+TexelPosition locate_texel(const Image& image, double u, double v);
+/// The place one column to the right (one row above), around the edge, with the same fractions.
+TexelPosition texel_right_of(const Image& image, TexelPosition position);
+TexelPosition texel_above(const Image& image, TexelPosition position);
+/// The pixel, or with `smooth` the bilinear mean of it and its neighbours to the right and above. Pixels sit
+/// at the lower left corners of their cells.
+Texel texel_at(const Image& image, const TexelPosition& position, bool smooth);
 
 /// Whether `tile tu tv` draws the picture at (u, v), before wrapping.
 bool tile_draws(double u, double v, double tu, double tv);
