@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "rayshade/math/interval.h"
@@ -24,23 +25,34 @@ struct Moment {
   double frame = 0;
 };
 
+/// An expression that is too large or nested too deeply to be kept.
+struct ExpressionError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 class Expression {
  public:
+  /// Limits of one expression, with the symbols it uses written out: each evaluation takes bounded time, and the text
+  /// can be parsed again.
+  static constexpr int kMaxNodes = 100000;
+  static constexpr int kMaxNesting = 2000;
+
   Expression(double constant = 0) : constant_(constant) {}  // NOLINT(google-explicit-constructor): numbers are expressions
   static Expression time();
   static Expression frame();
   /// An operation over its operands (unary operations take one, kLinear four). Folded to a constant when all operands
   /// are constant and the operation is not kLinear. kRemainder: both truncated to int, C remainder; a constant
-  /// divisor of zero must be refused by the caller before. kPower is fn::pow.
+  /// divisor of zero must be refused by the caller before (at run time it gives NaN). kPower is fn::pow.
+  /// Throws ExpressionError beyond the limits.
   static Expression apply(Operation op, std::array<Expression, 4> operands);
 
   bool constant() const { return !node_; }
   /// The value; for a constant whatever the moment.
   double evaluate(const Moment& moment) const;
-  /// Contains the value at every time of the interval.
+  /// Contains the value at every time of the interval where there is one (NaN is no value).
   Interval evaluate(const Interval& time, double frame) const;
-  /// Canonical text that parses to the same tree (parenthesised when not constant; %.17g constants, shortest that
-  /// round-trips).
+  /// Canonical text that parses to the same tree (parenthesised when not constant; the shortest decimals that
+  /// round-trip).
   std::string text() const;
 
  private:

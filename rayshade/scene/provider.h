@@ -3,8 +3,10 @@
 // fuzzers feed memory, and a cluster sends recorded bytes.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
@@ -25,7 +27,8 @@ class Provider {
   virtual Bytes read(const std::string& name) = 0;
 };
 
-/// Reads files and standard input. Refuses directories and files larger than `limit` bytes.
+/// Reads files, pipes and standard input (once; later reads of "-" give the same bytes). Refuses directories, files
+/// larger than `limit` bytes, and streams of unknown size beyond 1 GiB.
 class FileProvider : public Provider {
  public:
   explicit FileProvider(std::size_t limit = std::size_t{8} << 30) : limit_(limit) {}
@@ -33,6 +36,8 @@ class FileProvider : public Provider {
 
  private:
   std::size_t limit_;
+  std::mutex mutex_;
+  Bytes standard_input_;  ///< guarded by mutex_
 };
 
 /// Serves what it was given.

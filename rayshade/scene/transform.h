@@ -28,8 +28,8 @@ struct AnimatedStep {
 /// A degenerate value reached while moving (scale 0, singular matrix); rendering stops with an error that names the
 /// time and the place.
 struct MotionError : std::runtime_error {
-  MotionError(const std::string& what, Location where, double time)
-      : std::runtime_error(what), location(where), time(time) {}
+  MotionError(const std::string& what, Location where, double when)
+      : std::runtime_error(what), location(where), time(when) {}
   Location location;
   double time;
 };
