@@ -155,6 +155,7 @@ Vec3 windy_bump(const Vec3& point, const WindyParameters& p) {
   const int octaves = std::min(p.octaves, kMaxOctaves);
   for (int i = 0; i < octaves; ++i) {
     frequency *= p.frequency_scale;
+    if (std::fabs(frequency) > kHighestFrequency) break;
     bump += height * dnoise3(frequency * point);
     height *= p.height_scale;
   }
