@@ -52,11 +52,21 @@ class Blob {
   };
   Field field(const Vec3& p) const;
 
-  struct Span;
-  template <class Spans>
-  void collect(const Vec3& origin, const Vec3& unit_direction, double& sum_of_peaks, Spans& spans) const;
-  bool walk(const Vec3& origin, const Vec3& unit_direction, Span* spans, int count, double shift,
-            double scale, double lo, double hi, double& t) const;
+  /// The part of a ray inside a sphere of influence; in the direction's length, from the ray's shifted
+  /// origin.
+  struct Span {
+    double enter, exit;
+    const Ball* ball;
+  };
+  class Spans;
+  struct LocalRay;
+
+  /// The spheres of influence that the ray meets. False where even all their peaks together stay below the
+  /// threshold.
+  bool collect(const LocalRay& ray, Spans& spans) const;
+  bool first_crossing(const LocalRay& ray, Spans& spans, double lo, double hi, double& t) const;
+  void make_clusters(std::uint32_t first, std::uint32_t count);
+  void make_bounds();
 
   std::vector<Ball> balls_;
   std::vector<Cluster> clusters_;

@@ -33,7 +33,7 @@ class HeightField {
   /// From above.
   bool entering(const Ray& ray, double lo, const ShapeHit& hit) const;
   TextureCoordinates texture_coordinates(const Vec3& x, const Vec3& facing_normal, const ShapeHit& hit) const;
-  /// Empty where no triangle exists.
+  /// Without any triangle: the unit square at altitude 0.
   Bounds3 bounds() const { return bounds_; }
 
   const HeightFieldData& data() const { return *data_; }
@@ -47,20 +47,26 @@ class HeightField {
     std::uint32_t width;
     std::vector<Range> ranges;
   };
+  /// A triangle's plane in grid coordinates: its altitude at one corner and its slopes per cell.
+  struct Facet {
+    double corner_x, corner_y, corner_z, slope_x, slope_y;
+  };
   struct Walk;
 
-  float altitude(std::uint32_t i, std::uint32_t j) const;
+  float altitude(std::uint32_t i, std::uint32_t j) const {
+    return data_->altitudes[static_cast<std::size_t>(j) * (cells_ + 1) + i];
+  }
   Range cell_range(std::uint32_t i, std::uint32_t j) const;
+  Facet facet(std::uint32_t part) const;
+  /// The facet's normal in primitive space, upward, not normalised: n_z = 1.
+  Vec3 steepness(const Facet& facet) const;
+  template <int Axis>
+  void descend(Walk& walk) const;
+  template <int Axis>
   void test_cell(Walk& walk, std::uint32_t i, std::uint32_t j, double near, double far) const;
-  /// Altitude at the triangle's corner of the cell, and its slopes per cell along x and y.
-  struct Slope {
-    double z, x, y;
-    double corner_i, corner_j;
-  };
-  Slope slope(std::uint32_t part) const;
 
   std::shared_ptr<const HeightFieldData> data_;
-  std::uint32_t n_, cells_;
+  std::uint32_t cells_;  ///< per side
   std::vector<Level> levels_;
   Bounds3 bounds_;
 };
