@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Eye rays (language.md 8, shading.md 1.1 and 7.6): pinhole or square lens, left, right or single eye, and
+// the moment within the shutter interval. Rows count from the top.
+#pragma once
+
+#include <array>
+
+#include "rayshade/geometry/ray.h"
+#include "rayshade/scene/settings.h"
+
+namespace rayshade {
+
+/// Immutable; any number of threads may share one.
+class Camera {
+ public:
+  /// `settings` has passed resolve_settings: view and up are not parallel.
+  explicit Camera(const RenderSettings& settings);
+
+  /// The ray through the screen point (u, v), in pixels from the upper left corner of the field of view: from
+  /// the eye, of unit length, time not set.
+  Ray ray(double u, double v) const { return {eye_, direction(u, v)}; }
+
+  /// True where eye rays start on a lens instead of at a point.
+  bool has_lens() const { return aperture_ > 0; }
+
+  /// The ray of sample number `s` through the screen point (u, v) and the point of the lens cell of `s` that
+  /// `xi` and `zeta` in [0, 1) choose. Points at the focal distance from the eye are sharp.
+  Ray lens_ray(double u, double v, int s, double xi, double zeta) const {
+    const double p = -1 + (s % side_ + xi) * 2 / side_;
+    const double q = -1 + (s / side_ + zeta) * 2 / side_;
+    const Vec3 shift = aperture_ * (p * right_ + q * up_);
+    return {eye_ + shift, normalize(focal_distance_ * direction(u, v) - shift)};
+  }
+
+  /// The time of sample number `s` in a frame: the start of its slice of the shutter interval, moved by `xi`
+  /// in [0, 1) of a slice. Always the start of the frame without a shutter.
+  double time(int frame, int s, double xi) const {
+    const double start = start_time_ + frame * frame_length_;
+    return shutter_ > 0 ? start + shutter_ / (side_ * side_) * (s + xi) : start;
+  }
+
+  const Vec3& eye() const { return eye_; }          ///< after the stereo shift
+  const Vec3& forward() const { return forward_; }  ///< unit
+  const Vec3& right() const { return right_; }      ///< unit
+  const Vec3& up() const { return up_; }            ///< unit, on the screen
+  double focal_distance() const { return focal_distance_; }
+
+  /// Where a point in front of the eye is seen on the screen: the (u, v) of the ray that meets it. Not finite
+  /// for points beside or behind the eye plane.
+  std::array<double, 2> project(const Vec3& point) const;
+
+ private:
+  Vec3 direction(double u, double v) const {
+    return normalize(view_ + (u - half_width_) * step_x_ + (v - half_height_) * step_y_);
+  }
+
+  Vec3 eye_, view_;  // view_: eye to look point
+  Vec3 forward_, right_, up_;
+  Vec3 step_x_, step_y_;  // one pixel to the right, one pixel down, at the look point
+  double half_width_, half_height_;
+  double aperture_, focal_distance_;
+  double start_time_, frame_length_, shutter_;
+  int side_;
+};
+
+}  // namespace rayshade
