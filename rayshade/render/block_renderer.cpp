@@ -12,10 +12,17 @@ namespace {
 /// Samples traced together: enough to fill spans of queries, few enough to stay in cache.
 constexpr std::size_t kChunk = 1024;
 
-void note_layer(const SampleResult& result, const CompiledScene& scene, BlockPixels::Layer& layer) {
+void note_layer(const SampleResult& result, BlockPixels::Layer& layer) {
   layer.depth = result.hit ? static_cast<float>(result.distance) : std::numeric_limits<float>::infinity();
   for (int axis = 0; axis < 3; ++axis) layer.normal[axis] = result.hit ? static_cast<float>(result.normal[axis]) : 0.0f;
-  layer.object = result.hit ? static_cast<float>(scene.leaves[result.leaf].path + 1) : 0.0f;
+  layer.object = result.hit ? static_cast<float>(result.leaf + 1) : 0.0f;
+}
+
+void store(double* pixel, const Color& color, double alpha) {
+  pixel[0] = color.r;
+  pixel[1] = color.g;
+  pixel[2] = color.b;
+  pixel[3] = alpha;
 }
 
 }  // namespace
@@ -83,11 +90,10 @@ void BlockRenderer::render_single(const PixelRect& rect) {
 
 void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
   const RenderSettings& settings = *frame_.shading.settings;
-  const CompiledScene& compiled = *frame_.shading.compiled;
   const bool layered = frame_.layers || frame_.cost;
   const std::size_t pixels = static_cast<std::size_t>(rect.width()) * rect.height();
   out.rect = rect;
-  out.pixels.assign(pixels, {});
+  out.rgba.resize(4 * pixels);
   out.layers.assign(layered ? pixels : 0, {});
   ++counts_.blocks;
   counts_.pixels += pixels;
@@ -116,11 +122,10 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
     for (int x = rect.x0; x < rect.x1; ++x, ++index) {
       const std::size_t i = outer_index(x, y);
       const SampleResult& one = single[i];
-      BlockPixels::Pixel& pixel = out.pixels[index];
-      pixel = {one.color, one.hit ? 1.0 : 0.0};
+      store(&out.rgba[4 * index], one.color, one.hit && !frame_.sample_map ? 1.0 : 0.0);
       if (layered) {
         BlockPixels::Layer& layer = out.layers[index];
-        note_layer(one, compiled, layer);
+        note_layer(one, layer);
         layer.samples = 1;
         layer.tests = static_cast<float>(one.tests);
         layer.bounds_tests = static_cast<float>(one.bounds_tests);
@@ -131,7 +136,11 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
   if (!refine) {
     for (int y = rect.y0; y < rect.y1; ++y) {
       for (int x = rect.x0; x < rect.x1; ++x) {
-        counts_.supersampled += x == 0 || y == 0 || x == settings.width - 1 || y == settings.height - 1;
+        const bool border = x == 0 || y == 0 || x == settings.width - 1 || y == settings.height - 1;
+        counts_.supersampled += border;
+        if (border && frame_.sample_map) {
+          out.rgba[4 * (static_cast<std::size_t>(y - rect.y0) * rect.width() + (x - rect.x0)) + 3] = 1;
+        }
       }
     }
     return;
@@ -149,18 +158,19 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
       const int y = rect.y0 + static_cast<int>(p / static_cast<std::size_t>(rect.width()));
       const int reused = chosen_sample(x, y);
       const SampleResult& one = single[outer_index(x, y)];
-      BlockPixels::Pixel sum;
+      Color sum;
+      double alpha = 0;
       for (int k = 0; k < count; ++k) {
         const SampleResult& sample = k == reused ? one : *result++;
         const double weight = frame_.grid->weight(k);
-        sum.color += weight * sample.color;
-        sum.alpha += sample.hit ? weight : 0.0;
+        sum += weight * sample.color;
+        alpha += sample.hit ? weight : 0.0;
         if (!layered || k == reused) continue;
         out.layers[p].tests += static_cast<float>(sample.tests);
         out.layers[p].bounds_tests += static_cast<float>(sample.bounds_tests);
         if (frame_.cost) out.layers[p].microseconds += *time++;
       }
-      out.pixels[p] = sum;
+      store(&out.rgba[4 * p], sum, frame_.sample_map ? 1.0 : alpha);
       if (layered) out.layers[p].samples = static_cast<float>(count);
     }
     samples_.clear();

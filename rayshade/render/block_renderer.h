@@ -20,25 +20,22 @@ struct FrameScene {
   const SampleGrid* grid = nullptr;
   bool layers = false;              ///< depth, normal, object and samples are wanted
   bool cost = false;                ///< tests and time per pixel are wanted
+  bool sample_map = false;          ///< alpha tells which pixels are fully sampled (-m)
 };
 
 /// Finished pixels of a rectangle, row by row.
 struct BlockPixels {
   PixelRect rect;
-  struct Pixel {
-    Color color;
-    double alpha = 0;
-  };
   struct Layer {
     float depth = 0;                ///< distance of the first sample's hit; infinite where nothing was hit
     float normal[3] = {0, 0, 0};
-    float object = 0;               ///< number of the object's node, from 1; 0 where nothing was hit
+    float object = 0;               ///< number of the primitive, from 1; 0 where nothing was hit
     float samples = 0;
     float tests = 0;                ///< exact tests and bounds tests of all rays of the pixel
     float bounds_tests = 0;
     float microseconds = 0;
   };
-  std::vector<Pixel> pixels;
+  std::vector<double> rgba;         ///< 4 per pixel: linear colour and alpha
   std::vector<Layer> layers;        ///< empty unless layers or cost are wanted
 };
 

@@ -25,6 +25,7 @@ struct RenderOptions {
   bool brute_force = false;
   bool layers = false;
   bool cost = false;
+  bool sample_map = false;          ///< alpha tells which pixels are fully sampled
 };
 
 /// How far a frame is.

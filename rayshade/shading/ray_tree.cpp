@@ -45,7 +45,7 @@ struct RayTree::Node {
   std::uint64_t path = 0;
   std::uint32_t parent = kNone;
   std::uint32_t root = 0;                ///< index of the eye sample
-  std::uint16_t depth = 0;
+  std::uint32_t depth = 0;
   RayKind kind = RayKind::kEye;
   Slot slot = kTransmittedSlot;
 
@@ -142,7 +142,8 @@ void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResu
   if (shades_.size() < count) shades_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Node& node = nodes_[batch_nodes_[i]];
-    nearest_queries_[i] = {node.ray, node.lo, kFar, kAnyOpacity, node.kind, node.depth, kNone};
+    nearest_queries_[i] = {node.ray, node.lo, kFar, kAnyOpacity, node.kind,
+                           static_cast<std::uint16_t>(std::min<std::uint32_t>(node.depth, 0xffff)), kNone};
   }
   const std::span<NearestAnswer> answers(nearest_answers_.data(), count);
   scene_.intersector->nearest(nearest_queries_, answers, scratch_);
@@ -178,7 +179,7 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
       node.distance = kFar;
       node.end = node.ray.at(kFar);
       if (observer_) {
-        observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution, node.depth, false, kFar, nullptr,
+        observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution, static_cast<int>(node.depth), false, kFar, nullptr,
                            nullptr});
       }
       finish(id, results);
@@ -205,7 +206,7 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
       result.leaf = answer.hit.leaf;
     }
     if (observer_) {
-      observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution, node.depth, true, node.distance,
+      observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution, static_cast<int>(node.depth), true, node.distance,
                          &answer.hit, &shade.hit});
     }
   }
@@ -388,7 +389,7 @@ void RayTree::spawn(Shade& shade) {
   const WorldHit& world = shade.hit.world;
   Color reflect = surface.specular * surface.reflectance;
   const bool transmits = surface.transparency > kEpsilon;
-  if (nodes_[shade.node].depth >= settings.max_depth) {
+  if (nodes_[shade.node].depth >= static_cast<std::uint32_t>(settings.max_depth)) {
     if (transmits || any_above(reflect, kEpsilon)) ++counts_.skipped_depth;
     return;
   }
@@ -403,7 +404,7 @@ void RayTree::spawn(Shade& shade) {
     out.path = child_path(node.path, slot);
     out.parent = shade.node;
     out.root = node.root;
-    out.depth = static_cast<std::uint16_t>(node.depth + 1);
+    out.depth = node.depth + 1;
     out.kind = kind;
     out.slot = slot;
     out.medium = node.medium;

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "rayshade/cli/pictures.h"
+
+#include <fmt/format.h>
+
+#include "rayshade/image/layer_picture.h"
+
+namespace rayshade {
+namespace {
+
+constexpr const char* kDataLayers[] = {"depth.Z", "normal.X", "normal.Y", "normal.Z", "object", "samples"};
+constexpr const char* kCostLayers[] = {"tests", "bounds_tests", "microseconds"};
+
+bool is_rle(FileFormat format) { return format == FileFormat::kRle || format == FileFormat::kRleExponential; }
+
+bool ends_with_exr(const std::string& name) { return format_by_suffix(name) == FileFormat::kExr; }
+
+}  // namespace
+
+std::string with_infix(const std::string& path, const std::string& infix) {
+  const std::size_t slash = path.rfind('/');
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return path + "." + infix;
+  return path.substr(0, dot) + "." + infix + path.substr(dot);
+}
+
+PictureOutput::PictureOutput(const Options& options, const RenderSettings& settings, std::string name)
+    : options_(options), settings_(settings), name_(std::move(name)) {
+  std::optional<FileFormat> chosen;
+  if (options.format) chosen = format_by_name(*options.format);
+  else if (name_ != "-") chosen = format_by_suffix(name_);
+  if (options.exponential) {
+    if (chosen && !is_rle(*chosen)) {
+      throw UsageError(fmt::format("-e writes an RLE picture, not {}", format_name(*chosen)));
+    }
+    chosen = FileFormat::kRleExponential;
+  }
+  format_ = chosen.value_or(FileFormat::kPng8);
+  // RLE and EXR carry alpha unless told not to; PNG only if asked: viewers show it as holes.
+  alpha_ = has_alpha(format_) && ((is_rle(format_) || format_ == FileFormat::kExr) == options.alpha);
+  if (options.sample_map) alpha_ = has_alpha(format_);
+  numbered_ = name_ != "-" && is_numbered(name_);
+  appended_ = settings.frames > 1 && !numbered_;
+  if (appended_ && !can_append(format_)) {
+    throw UsageError(fmt::format("{} frames do not fit into one {} file: put the number of the frame into the name, as in "
+                                 "-O out.%04d.{}",
+                                 settings.frames, format_name(format_),
+                                 format_ == FileFormat::kExr ? "exr" : "png"));
+  }
+  for (const auto& extra : {options.layers, options.cost_map}) {
+    if (extra && settings.frames > 1 && !is_numbered(*extra)) {
+      throw UsageError(fmt::format("'{}': with several frames the name needs the number of the frame, as in %04d", *extra));
+    }
+  }
+}
+
+FrameBufferOptions PictureOutput::frame_buffer_options(std::uint64_t memory_limit) const {
+  FrameBufferOptions out;
+  out.width = settings_.window_width();
+  out.height = settings_.window_height();
+  out.storage = storage_of(format_);
+  out.encoding = {options_.gamma, options_.srgb};
+  if (options_.layers) out.layers.insert(out.layers.end(), std::begin(kDataLayers), std::end(kDataLayers));
+  if (options_.cost_map) out.layers.insert(out.layers.end(), std::begin(kCostLayers), std::end(kCostLayers));
+  out.spill_threshold = std::min(out.spill_threshold, memory_limit / 2);
+  return out;
+}
+
+PictureInfo PictureOutput::info(int frame) const {
+  PictureInfo out;
+  out.min_x = settings_.min_x;
+  out.min_y = settings_.min_y;
+  out.screen_width = settings_.width;
+  out.screen_height = settings_.height;
+  out.alpha = alpha_;
+  out.tag_encoding = options_.srgb || options_.gamma != 1;
+  out.provenance = tags_;
+  if (settings_.frames > 1 || settings_.first_frame != 0) out.provenance.emplace_back("Frame", fmt::format("{}", frame));
+  return out;
+}
+
+std::string PictureOutput::file_name(const std::string& pattern, int frame) const {
+  return is_numbered(pattern) ? numbered_name(pattern, frame) : pattern;
+}
+
+void PictureOutput::write_frame(const FrameBuffer& picture, int frame) {
+  if (appended_) {
+    if (!appending_) appending_ = std::make_unique<OutputFile>(name_);
+    write_picture(picture, format_, info(frame), *appending_);
+    appending_->mark();
+  } else {
+    OutputFile file(name_ == "-" ? name_ : file_name(name_, frame));
+    write_picture(picture, format_, info(frame), file);
+    file.commit();
+  }
+  write_layers(picture, frame);
+  write_cost_map(picture, frame);
+}
+
+std::string PictureOutput::write_partial(const FrameBuffer& picture, int frame) {
+  if (name_ == "-") return {};
+  const std::string partial = partial_name(file_name(name_, frame));
+  OutputFile file(partial);
+  if (file.direct()) return {};
+  write_picture(picture, format_, info(frame), file);
+  file.commit();
+  return partial;
+}
+
+void PictureOutput::finish() {
+  if (appending_) appending_->commit();
+  appending_.reset();
+}
+
+void PictureOutput::write_layers(const FrameBuffer& picture, int frame) {
+  if (!options_.layers) return;
+  const std::string name = file_name(*options_.layers, frame);
+  if (ends_with_exr(name)) {
+    // One file with the colours and all layers; colours need floats, so it is written from a float picture only.
+    if (picture.storage() == PixelStorage::kFloat) {
+      OutputFile file(name);
+      write_picture(picture, FileFormat::kExr, info(frame), file);
+      file.commit();
+      return;
+    }
+    throw UsageError("--layers to an EXR file needs an EXR or PFM picture: use -O with .exr, or --layers NAME.pfm or .png");
+  }
+  const bool png = format_by_suffix(name) == FileFormat::kPng8;
+  for (const char* layer : kDataLayers) {
+    OutputFile file(with_infix(name, layer));
+    if (png) write_layer_png(picture, picture.layer_index(layer), {}, file);
+    else write_layer_pfm(picture, picture.layer_index(layer), file);
+    file.commit();
+  }
+}
+
+void PictureOutput::write_cost_map(const FrameBuffer& picture, int frame) {
+  if (!options_.cost_map) return;
+  const std::string name = file_name(*options_.cost_map, frame);
+  const std::size_t dot = name.rfind('.');
+  const std::string stem = dot == std::string::npos || name.find('/', dot) != std::string::npos ? name : name.substr(0, dot);
+  for (const char* layer : kCostLayers) {
+    OutputFile numbers(fmt::format("{}.{}.pfm", stem, layer));
+    write_layer_pfm(picture, picture.layer_index(layer), numbers);
+    numbers.commit();
+    OutputFile colors(fmt::format("{}.{}.png", stem, layer));
+    FalseColorScale scale;
+    scale.logarithmic = true;
+    write_layer_png(picture, picture.layer_index(layer), scale, colors);
+    colors.commit();
+  }
+}
+
+}  // namespace rayshade

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Where the frames of a run go: one file, numbered files, or frames one after the other; beside it layers, cost maps
+// and partial pictures.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rayshade/cli/options.h"
+#include "rayshade/image/format.h"
+#include "rayshade/image/frame_buffer.h"
+#include "rayshade/image/output_file.h"
+#include "rayshade/image/writer.h"
+
+namespace rayshade {
+
+class PictureOutput {
+ public:
+  /// `name`: "-" is standard output. Throws UsageError for combinations that cannot be (several frames in one PNG,
+  /// options of one format with another), FormatError for unknown formats.
+  PictureOutput(const Options& options, const RenderSettings& settings, std::string name);
+
+  FrameBufferOptions frame_buffer_options(std::uint64_t memory_limit) const;
+  FileFormat format() const { return format_; }
+  /// A tag for every picture: what determines it.
+  void set_provenance(std::vector<std::pair<std::string, std::string>> tags) { tags_ = std::move(tags); }
+
+  /// Writes a finished frame (and its layers and cost map).
+  void write_frame(const FrameBuffer& picture, int frame);
+  /// Writes what is there of a frame beside the real name; nothing where frames go to standard output.
+  /// Returns the name of the file, empty if there is none.
+  std::string write_partial(const FrameBuffer& picture, int frame);
+  /// After the last frame: the file of appended frames gets its name.
+  void finish();
+
+ private:
+  PictureInfo info(int frame) const;
+  std::string file_name(const std::string& pattern, int frame) const;
+  void write_layers(const FrameBuffer& picture, int frame);
+  void write_cost_map(const FrameBuffer& picture, int frame);
+
+  const Options& options_;
+  const RenderSettings& settings_;
+  std::string name_;
+  FileFormat format_ = FileFormat::kPng8;
+  bool numbered_ = false, appended_ = false, alpha_ = false;
+  std::vector<std::pair<std::string, std::string>> tags_;
+  std::unique_ptr<OutputFile> appending_;
+};
+
+/// "a/b.ext" and "depth" -> "a/b.depth.ext".
+std::string with_infix(const std::string& path, const std::string& infix);
+
+}  // namespace rayshade

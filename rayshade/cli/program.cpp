@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+#include "rayshade/cli/program.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "rayshade/cli/options.h"
+#include "rayshade/cli/pictures.h"
+#include "rayshade/cli/progress.h"
+#include "rayshade/cli/report.h"
+#include "rayshade/cli/signals.h"
+#include "rayshade/lang/parse.h"
+#include "rayshade/render/renderer.h"
+#include "rayshade/scene/provider.h"
+
+namespace rayshade {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+void complain(const std::string& text) { fmt::print(stderr, "rayshade: {}\n", text); }
+
+struct CloseFile {
+  void operator()(std::FILE* file) const {
+    if (file && file != stderr) std::fclose(file);
+  }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+void note_resources(RunSummary& run, Clock::time_point start) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  run.total_cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  run.wall_seconds = seconds_since(start);
+  run.peak_memory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+void write_text(const std::string& name, const std::string& text) {
+  OutputFile file(name);
+  file.write(text);
+  file.commit();
+}
+
+/// One run of the program, step by step; each step may end it.
+class Run {
+ public:
+  explicit Run(Options options) : options_(std::move(options)) {}
+
+  int go() {
+    open_report();
+    if (!read_scene()) return kFailed;
+    if (options_.action == Action::kDumpScene) {
+      write_text(options_.output.value_or("-"), canonical_text(scene_));
+      return kComplete;
+    }
+    settings_ = resolve_settings(scene_.settings, options_.settings);
+    take_report_settings();
+    if (options_.action == Action::kRender) return render();
+    Renderer renderer(scene_, settings_, provider_, render_options());
+    if (options_.action == Action::kExplain) return explain(renderer);
+    if (!options_.quiet) {
+      fmt::print(stderr, "{}: {} primitive{}, {} error{}, {} warning{}\n", scene_name(), renderer.compiled().counts.primitives,
+                 renderer.compiled().counts.primitives == 1 ? "" : "s", 0, "s", warnings_, warnings_ == 1 ? "" : "s");
+    }
+    return kComplete;
+  }
+
+  std::string describe(const Location& where) const { return where.line > 0 ? scene_.describe(where) + ": " : ""; }
+
+ private:
+  std::string scene_name() const { return options_.input.empty() ? "-" : options_.input; }
+  bool chatty() const { return report_.get() != stderr || !options_.quiet; }
+
+  void open_report() {
+    report_.reset(stderr);
+    if (!options_.report_file) return;
+    std::FILE* file = std::fopen(options_.report_file->c_str(), "w");
+    if (!file) throw UsageError(fmt::format("cannot open report file '{}': {}", *options_.report_file, std::strerror(errno)));
+    report_.reset(file);
+  }
+
+  /// What the scene says about reports counts from here on; options win.
+  void take_report_settings() {
+    const SceneSettings& s = scene_.settings;
+    options_.quiet = options_.quiet || s.quiet;
+    options_.verbose = options_.verbose || s.verbose;
+    if (!options_.report_frequency) options_.report_frequency = s.report_frequency;
+    if (!options_.report_file && s.report_file) {
+      std::FILE* file = std::fopen(s.report_file->c_str(), "w");
+      if (!file) {
+        throw RenderError(fmt::format("cannot open report file '{}': {}", *s.report_file, std::strerror(errno)), {});
+      }
+      report_.reset(file);
+    }
+  }
+
+  bool read_scene() {
+    const Clock::time_point start = Clock::now();
+    ParseOptions parse;
+    parse.preprocess = options_.preprocess == Preprocess::kNever ? PreprocessMode::kNever
+                       : options_.preprocessor_arguments         ? PreprocessMode::kAlways
+                                                                 : PreprocessMode::kAuto;
+    if (options_.preprocessor_arguments) {
+      parse.preprocessor_arguments = split_preprocessor_arguments(*options_.preprocessor_arguments);
+    }
+    parse.flip_normals = options_.settings.flip_normals;
+    parse.verbose = options_.verbose;
+    ParseResult result = parse_scene(provider_, scene_name(), parse);
+    const bool color = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+    const bool quiet = options_.quiet || result.scene.settings.quiet;
+    for (const std::string& line : result.prints) fmt::print(stderr, "{}", line);
+    for (const Diagnostic& d : result.diagnostics) {
+      if (d.severity == Severity::kAdvice && quiet) continue;
+      warnings_ += d.severity == Severity::kWarning || d.severity == Severity::kAdvice;
+      fmt::print(stderr, "{}", format_diagnostic(d, color));
+    }
+    scene_ = std::move(result.scene);
+    run_.parse_seconds = seconds_since(start);
+    return result.ok;
+  }
+
+  RenderOptions render_options() const {
+    RenderOptions out;
+    out.threads = options_.threads > 0 ? options_.threads : available_threads();
+    out.block_side = options_.block;
+    out.brute_force = options_.intersector == IntersectorChoice::kBruteForce;
+    out.layers = options_.layers.has_value();
+    out.cost = options_.cost_map.has_value();
+    out.sample_map = options_.sample_map;
+    return out;
+  }
+
+  int explain(Renderer& renderer) {
+    if (options_.explain_x >= settings_.width || options_.explain_y >= settings_.height) {
+      throw UsageError(fmt::format("--explain: pixel {} {} is not on the screen of {} x {}", options_.explain_x,
+                                   options_.explain_y, settings_.width, settings_.height));
+    }
+    write_text(options_.output.value_or("-"),
+               renderer.explain(settings_.first_frame, options_.explain_x, options_.explain_y));
+    return kComplete;
+  }
+
+  /// The picture's memory against what may be taken, before anything large is allocated.
+  std::uint64_t check_memory(const FrameBufferOptions& picture) const {
+    const std::uint64_t limit = options_.memory_limit.value_or(available_memory());
+    const std::uint64_t per_pixel = pixel_size(picture.storage) + 4 * picture.layers.size();
+    const std::uint64_t need = estimate_picture_bytes(settings_, per_pixel) + (std::uint64_t{32} << 20);
+    if (options_.verbose) {
+      fmt::print(report_.get(), "Memory for the picture: {:.1f} MB of {:.1f} MB available\n",
+                 static_cast<double>(need) / 1e6, static_cast<double>(limit) / 1e6);
+    }
+    if (need > limit) {
+      throw RenderError(
+          fmt::format("a picture of {} x {} pixels needs {:.1f} GB of memory, and {:.1f} GB are available: render it in parts "
+                      "with -W, or raise --memory",
+                      settings_.window_width(), settings_.window_height(), static_cast<double>(need) / 1e9,
+                      static_cast<double>(limit) / 1e9),
+          scene_.settings.screen_location);
+    }
+    return limit;
+  }
+
+  int render() {
+    const std::string name = options_.output.value_or(scene_.settings.output.value_or("-"));
+    PictureOutput output(options_, settings_, name);
+    if (name == "-" && isatty(STDOUT_FILENO)) {
+      throw UsageError("standard output is a terminal: name a file with -O, or redirect");
+    }
+    if (options_.resume) {
+      if (name == "-") throw RenderError("-c needs the name of the picture: -O, or outfile in the scene", {});
+      complain("warning: this version keeps no journal to continue from; rendering from the start");
+    }
+    const FrameBufferOptions buffer = output.frame_buffer_options(
+        check_memory(output.frame_buffer_options(options_.memory_limit.value_or(available_memory()))));
+    Renderer renderer(scene_, settings_, provider_, render_options());
+    run_.scene = scene_name();
+    run_.version = RAYSHADE_VERSION;
+    run_.scene_hash = scene_hash(scene_);
+    output.set_provenance({{"Software", "rayshade " RAYSHADE_VERSION},
+                           {"Scene-Hash", run_.scene_hash},
+                           {"Seed", fmt::format("{}", settings_.seed)},
+                           {"Samples", fmt::format("{} x {}{}", settings_.samples, settings_.samples,
+                                                   settings_.jitter ? " jittered" : "")}});
+    if (options_.verbose) {
+      fmt::print(report_.get(), "rayshade {}\n{}", RAYSHADE_VERSION, settings_text(settings_, renderer));
+      std::fflush(report_.get());
+    }
+
+    FrameBuffer picture(buffer);
+    Progress progress(report_.get(), {!chatty(), report_.get() == stderr && isatty(STDERR_FILENO) != 0,
+                                      options_.report_frequency.value_or(0), settings_.min_y});
+    SignalRequests requests;
+    bool complete = true;
+    for (int i = 0; i < settings_.frames && complete; ++i) {
+      const int frame = settings_.first_frame + i;
+      if (i > 0) picture.clear();
+      progress.start(settings_.frames > 1 ? fmt::format("frame {} ({} of {})", frame, i + 1, settings_.frames) : "rendering");
+      complete = renderer.render_frame(frame, picture, requests.stop(), [&](const FrameProgress& now) {
+        progress.update(now);
+        if (requests.take_progress()) progress.print_now(now);
+        if (requests.take_save()) output.write_partial(picture, frame);
+      });
+      progress.finish();
+      if (complete) {
+        output.write_frame(picture, frame);
+      } else {
+        const std::string partial = output.write_partial(picture, frame);
+        complain(partial.empty() ? "stopped; no partial picture is kept on standard output"
+                                 : fmt::format("stopped; the partial picture is {}", partial));
+      }
+    }
+    if (complete || renderer.statistics().frames > 0) output.finish();
+    report(renderer, complete ? "complete" : "stopped");
+    return complete ? kComplete : kStopped;
+  }
+
+  void report(const Renderer& renderer, const char* outcome) {
+    run_.outcome = outcome;
+    note_resources(run_, start_);
+    if (chatty()) {
+      fmt::print(report_.get(), "{}", statistics_text(renderer.statistics(), run_, options_.verbose));
+      std::fflush(report_.get());
+    }
+    if (options_.stats_file) {
+      write_text(*options_.stats_file, statistics_json(renderer.statistics(), settings_, run_));
+    }
+  }
+
+  Options options_;
+  FileProvider provider_;
+  Scene scene_;
+  RenderSettings settings_;
+  RunSummary run_;
+  File report_{stderr};
+  int warnings_ = 0;
+  Clock::time_point start_ = Clock::now();
+};
+
+int guarded(Run& run) {
+  try {
+    return run.go();
+  } catch (const SettingsError& error) {
+    fmt::print(stderr, "{}error: {}\n", run.describe(error.location), error.what());
+  } catch (const RenderError& error) {
+    fmt::print(stderr, "{}error: {}\n", run.describe(error.location), error.what());
+  }
+  return kFailed;
+}
+
+}  // namespace
+
+int run_program(const std::vector<std::string>& arguments) {
+  try {
+    const Options options = parse_options(arguments);
+    switch (options.action) {
+      case Action::kHelp: fmt::print("{}", help_text()); return kComplete;
+      case Action::kVersion: fmt::print("rayshade {}\n", RAYSHADE_VERSION); return kComplete;
+      case Action::kManOptions: fmt::print("{}", man_options()); return kComplete;
+      case Action::kCompletion: fmt::print("{}", bash_completion()); return kComplete;
+      default: break;
+    }
+    Run run(options);
+    return guarded(run);
+  } catch (const UsageError& error) {
+    complain(error.what());
+    fmt::print(stderr, "Try 'rayshade --help'.\n");
+    return kUsage;
+  } catch (const FormatError& error) {
+    complain(error.what());
+    return kUsage;
+  } catch (const std::bad_alloc&) {
+    complain("out of memory");
+  } catch (const std::exception& error) {
+    complain(error.what());
+  }
+  return kFailed;
+}
+
+}  // namespace rayshade
