@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "rayshade/shading/lights.h"
+
+#include <gtest/gtest.h>
+
+#include "rayshade/math/functions.h"
+#include "rayshade/shading/atmosphere.h"
+
+namespace rayshade {
+namespace {
+
+Light spot(double exponent, double inner, double outer) {
+  Light light;
+  light.kind = LightKind::kSpot;
+  light.target = {1, 0, 0};
+  light.exponent = exponent;
+  light.inner = inner;
+  light.outer = outer;
+  return light;
+}
+
+ShadingLight prepared(const Light& light) {
+  Scene scene;
+  scene.lights.push_back(light);
+  return prepare_lights(scene).at(0);
+}
+
+double cos_degrees(double degrees) { return fn::cos(degrees * fn::kPi / 180); }
+
+TEST(SpotTest, RampRunsFromTheOuterToTheInnerAngle) {
+  const ShadingLight light = prepared(spot(0, 10, 30));
+  EXPECT_EQ(spot_factor(light, cos_degrees(31)), 0);
+  EXPECT_EQ(spot_factor(light, cos_degrees(9)), 1);
+  const double x = cos_degrees(20);
+  const double w = (x - cos_degrees(30)) / (cos_degrees(10) - cos_degrees(30));
+  EXPECT_DOUBLE_EQ(spot_factor(light, x), w * w * (3 - 2 * w));
+}
+
+TEST(SpotTest, WithoutConeOnlyTheExponentCounts) {
+  for (const auto& [inner, outer] : {std::pair{180.0, 180.0}, std::pair{100.0, 120.0}, std::pair{90.0, 95.0}}) {
+    const ShadingLight light = prepared(spot(2, inner, outer));
+    EXPECT_DOUBLE_EQ(spot_factor(light, 0.5), 0.25);
+    EXPECT_EQ(spot_factor(light, 0), 0);
+    EXPECT_EQ(spot_factor(light, -0.5), 0);
+  }
+}
+
+TEST(SpotTest, EqualAnglesMakeAHardEdge) {
+  const ShadingLight light = prepared(spot(0, 20, 20));
+  EXPECT_EQ(spot_factor(light, light.cos_inner), 0);
+  EXPECT_EQ(spot_factor(light, std::nextafter(light.cos_inner, 2.0)), 1);
+  EXPECT_EQ(spot_factor(light, cos_degrees(20.001)), 0);
+}
+
+TEST(PrepareLightsTest, EvaluationOrderIsTheReverseOfDefinition) {
+  Scene scene;
+  Light light;
+  for (int i = 0; i < 3; ++i) {
+    light.position = {static_cast<double>(i), 0, 0};
+    scene.lights.push_back(light);
+  }
+  const auto lights = prepare_lights(scene);
+  ASSERT_EQ(lights.size(), 3u);
+  EXPECT_EQ(lights[0].position.x, 2);
+  EXPECT_EQ(lights[2].position.x, 0);
+}
+
+TEST(PrepareLightsTest, AreaLightsBecomeCellsOfEqualShare) {
+  Light area;
+  area.kind = LightKind::kArea;
+  area.intensity = {6, 6, 6};
+  area.position = {1, 1, 1};
+  area.u_end = {4, 1, 1};
+  area.v_end = {1, 3, 1};
+  area.u_samples = 3;
+  area.v_samples = 2;
+  Scene scene;
+  scene.lights.push_back(area);
+  const auto lights = prepare_lights(scene);
+  ASSERT_EQ(lights.size(), 6u);
+  // Last defined first: the cell of the largest u and v.
+  EXPECT_EQ(lights[0].position, (Vec3{3, 2, 1}));
+  EXPECT_EQ(lights[5].position, (Vec3{1, 1, 1}));
+  EXPECT_DOUBLE_EQ(lights[0].intensity.r, 1);
+  const Illumination middle = illuminate(lights[5], {1.5, 1.5, 0}, 0.5, 0.5);
+  EXPECT_EQ(middle.direction, (Vec3{0, 0, 1}));
+  EXPECT_DOUBLE_EQ(middle.distance, 1);
+}
+
+TEST(PrepareLightsTest, ASceneWithoutLightsHasTheDefaultOne) {
+  const auto lights = prepare_lights(Scene{});
+  ASSERT_EQ(lights.size(), 1u);
+  const Illumination light = illuminate(lights[0], {5, 6, 7}, 0, 0);
+  EXPECT_NEAR(light.direction.x, 1 / std::sqrt(3.0), 1e-15);
+  EXPECT_NEAR(light.direction.y, -1 / std::sqrt(3.0), 1e-15);
+  EXPECT_EQ(light.distance, kFar);
+}
+
+TEST(ExtendedTest, SamplesStratifyASquareFacingThePoint) {
+  Light extended;
+  extended.kind = LightKind::kExtended;
+  extended.position = {0, 0, 10};
+  extended.radius = 2;
+  const ShadingLight light = prepared(extended);
+  for (int s = 0; s < 9; ++s) {
+    const Vec3 low = extended_target(light, {}, s, 3, 0, 0), high = extended_target(light, {}, s, 3, 1, 1);
+    EXPECT_NEAR(low.z, 10, 1e-12);
+    EXPECT_NEAR(length(high - low), std::sqrt(2.0) * 4 / 3, 1e-12);
+    for (const Vec3& p : {low, high}) {
+      EXPECT_LE(std::fabs(p.x), 2 + 1e-12);
+      EXPECT_LE(std::fabs(p.y), 2 + 1e-12);
+    }
+  }
+}
+
+TEST(AttenuationTest, HalvesPerThickness) {
+  EXPECT_NEAR(attenuation(3, 3), 0.5, 1e-8);
+  EXPECT_NEAR(attenuation(6, 3), 0.25, 1e-8);
+  EXPECT_EQ(attenuation(3, 0), 0);
+  EXPECT_EQ(attenuation(kFar, 3), 0);
+  EXPECT_EQ(attenuation(std::numeric_limits<double>::infinity(), 3), 0);
+  EXPECT_EQ(attenuation(std::nan(""), 3), 0);
+}
+
+TEST(AtmosphereTest, TheEffectListedLastIsAppliedFirst) {
+  AtmosphereEffect red, green;
+  red.color = {1, 0, 0};
+  green.color = {0, 1, 0};
+  const Ray ray{{0, 0, 0}, {1, 0, 0}};
+  // Thickness 0: both are opaque, and the first listed lies on top.
+  EXPECT_EQ(apply_atmosphere({red, green}, {}, ray, 1, ray.at(1)), (Color{1, 0, 0}));
+}
+
+TEST(AtmosphereTest, MistOfAConstantHeightIsFogOfThatDensity) {
+  AtmosphereEffect mist;
+  mist.kind = EffectKind::kMist;
+  mist.color = {1, 1, 1};
+  mist.thickness = {2, 2, 2};
+  mist.zero = 0;
+  mist.scale = 1;
+  const Ray ray{{0, 0, 1}, {1, 0, 0}};
+  const double expected = 1 - attenuation(3 * fn::exp(-1), 2);
+  EXPECT_NEAR(apply_atmosphere({mist}, {}, ray, 3, ray.at(3)).r, expected, 1e-12);
+  // And nearly so for a ray that rises a little.
+  const Ray rising{{0, 0, 1}, {1, 0, 1e-4}};
+  EXPECT_NEAR(apply_atmosphere({mist}, {}, rising, 3, rising.at(3)).r, expected, 1e-4);
+}
+
+}  // namespace
+}  // namespace rayshade
