@@ -32,15 +32,17 @@ inline constexpr int kLeafKinds = static_cast<int>(LeafKind::kInstance) + 1;
 /// What the untextured surfaces below a leaf may be (rule 5); CSG and instances may be both.
 enum Opacity : std::uint8_t { kOpaque = 1, kTransparent = 2, kAnyOpacity = 3 };
 
-/// 20 bytes.
+/// 24 bytes.
 struct Leaf {
   LeafKind kind = LeafKind::kPlane;
   std::uint8_t opacity = kOpaque;     ///< Opacity bits
   bool animated = false;              ///< its placement varies with time
   std::uint32_t shape = 0;            ///< index in the pool of its kind (CSG: csgs, instance: instances)
   std::uint32_t placement = kNone;    ///< index in placements; kNone: the group's own space
-  std::uint32_t path = kNone;         ///< index in path_nodes: the primitive's own node
-  std::uint32_t order = 0;            ///< place in the original's order of tests within the group (objects.md 6.2)
+  std::uint32_t path = kNone;         ///< index in path_nodes: the primitive's own node; CSG and instances: the
+                                      ///< innermost of their nodes that has something to say, or kNone
+  std::uint64_t order = 0;            ///< place in the original's order of tests within the group (objects.md 6.2);
+                                      ///< 64 bits because shared structures hold exponentially many places
 };
 
 /// One step of the way from a primitive to the world. The world itself has no node.
@@ -53,7 +55,7 @@ struct PathNode {
 
 /// All transforms between a primitive and the space of its group, composed.
 struct Placement {
-  AffinePair map;                                   ///< constant placements
+  AffinePair map;                                   ///< animated ones: at the start of the frame, for sizes only
   std::vector<const TransformList*> lists;          ///< animated ones: innermost first
   bool animated() const { return !lists.empty(); }
 };
@@ -67,7 +69,7 @@ struct Csg {
                                                     ///< objects smaller than one unit
 };
 
-/// A shared group standing somewhere. `order_base` shifts the ranks of its members.
+/// A shared group standing somewhere. The order of its leaf shifts the ranks of its members.
 struct Instance {
   std::uint32_t group = 0;
 };
@@ -79,6 +81,8 @@ struct Group {
   std::uint32_t unbounded = 0;                      ///< how many are unbounded
   std::uint64_t order_span = 0;                     ///< how many orders its leaves use, instances' contents included
   Bounds3 bounds;                                   ///< of the bounded leaves, over the frame's shutter interval
+  double condition = 1;                             ///< largest growth of rounding errors by the placements below
+  bool solid = false;                               ///< one closed solid: whoever leaves it was inside its bounds
   std::shared_ptr<const Hierarchy> hierarchy;       ///< none where a loop over the leaves is as good
 };
 
@@ -130,6 +134,11 @@ class CompiledScene {
   std::vector<Blob> blobs;
   std::vector<HeightField> height_fields;
 
+  /// Per path node: whether it or a node further out in the same group has textures.
+  std::vector<std::uint8_t> path_textured;
+  /// Groups, every one after all that it refers to.
+  std::vector<std::uint32_t> bottom_up;
+
   bool has_transparent = false;         ///< some leaf is not opaque: shadow rays may need the ordered walk
   bool has_textures = false;
   bool has_csg = false;
@@ -138,13 +147,25 @@ class CompiledScene {
   CompileCounts counts;
 
   /// Bounds and hierarchies over another frame's shutter interval; does nothing for a scene without motion.
+  /// Leaves may change their numbers within their group. Throws MotionError where a transform is degenerate at the
+  /// start of the frame.
   void prepare_frame(const Interval& shutter, double frame, bool hierarchies);
   /// Largest extent of a leaf in the space of its group (planes: `scale`).
   double leaf_extent(LeafId leaf) const;
+  /// Conservative bounds in the space of its group at any time of the interval. What CSG and instances refer to is
+  /// taken as of the last prepare_frame.
   Bounds3 leaf_bounds(LeafId leaf, const Interval& time, double frame) const;
+  /// The box of the primitive of a leaf in its own space; not for CSG and instances.
+  Bounds3 shape_bounds(const Leaf& leaf) const;
 
   Interval shutter{};
   double frame = 0;
+
+ private:
+  friend class Compiler;
+  void rebuild_groups(bool hierarchies);
+  void rebuild_group(Group& group, bool hierarchies);
+  void count_bytes();
 };
 
 /// Flattens. Throws CompileError.
