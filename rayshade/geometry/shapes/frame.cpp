@@ -5,22 +5,18 @@
 
 namespace rayshade {
 
-AxisFrame::AxisFrame(const Vec3& axis) : AxisFrame() {
+AxisFrame axis_frame(const Vec3& axis) {
   const Vec3 w = normalize(axis);
   const double a = w.x, b = w.y, c = w.z;
   const double square = a * a + b * b;
-  if (square == 0) {  // the poles; also tilts so small that they are lost in rounding
-    if (c < 0) {
-      y = {0, -1, 0};
-      z = {0, 0, -1};
-    }
-    return;
+  if (square == 0) {  // the poles, and tilts that vanish in the squares
+    if (c < 0) return {{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
+    return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   }
   // 1 + c cancels near the -z pole, where a and b still know the tilt.
   const double inverse = c < 0 ? (1 - c) / square : 1 / (1 + c);
-  x = {1 - a * (a * inverse), -a * (b * inverse), -a};
-  y = {x.y, 1 - b * (b * inverse), -b};
-  z = w;
+  const double xy = -a * (b * inverse);
+  return {{{1 - a * (a * inverse), xy, -a}, {xy, 1 - b * (b * inverse), -b}, w}};
 }
 
 double turns_of_cosine(double c) {

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// The polygon (objects.md 4.5): any number of vertices, inside by the winding number, two-sided. Vertices off
+// its plane are taken as projected onto it along the axis that the winding test drops.
+#pragma once
+
+#include <vector>
+
+#include "rayshade/geometry/ray.h"
+#include "rayshade/math/bounds.h"
+#include "rayshade/scene/shape.h"
+
+namespace rayshade {
+
+class Polygon {
+ public:
+  /// `flip`: the option -f, which negates the normal.
+  explicit Polygon(const shape::Polygon& polygon, bool flip = false);
+
+  /// t >= lo, t <= hi.
+  bool intersect(const Ray& ray, double lo, double hi, ShapeHit& hit) const;
+  SurfacePoint surface_point(const Ray& ray, const ShapeHit& hit) const;
+  /// By the normal.
+  bool entering(const Ray& ray, double /*lo*/, const ShapeHit& /*hit*/) const {
+    return dot(normal_, ray.direction) < 0;
+  }
+  /// u = x, v = y in primitive space, whatever the orientation.
+  TextureCoordinates texture_coordinates(const Vec3& x, const Vec3& facing_normal, const ShapeHit& hit) const;
+  Bounds3 bounds() const { return bounds_; }
+
+ private:
+  struct Point2 {
+    double u, v;
+  };
+  /// Non-zero winding number about c, by quadrants that are closed to the right and above.
+  bool winds_around(Point2 c) const;
+
+  Vec3 point_;   ///< the first vertex, in the plane
+  Vec3 normal_;  ///< unit
+  int u_axis_, v_axis_;
+  Point2 lo_, hi_;       ///< box of the projected vertices
+  double normal_error_;  ///< bound on the error of `normal_`, in radians
+  std::vector<Point2> vertices_;
+  Bounds3 bounds_;
+};
+
+}  // namespace rayshade
