@@ -110,11 +110,11 @@ class Run {
   bool read_scene() {
     const Clock::time_point start = Clock::now();
     ParseOptions parse;
-    parse.preprocess = options_.preprocess == Preprocess::kNever ? PreprocessMode::kNever
-                       : options_.preprocessor_arguments         ? PreprocessMode::kAlways
-                                                                 : PreprocessMode::kAuto;
+    parse.preprocessing = options_.preprocess == Preprocess::kNever ? Preprocessing::kNever
+                          : options_.preprocessor_arguments         ? Preprocessing::kAlways
+                                                                    : Preprocessing::kAuto;
     if (options_.preprocessor_arguments) {
-      parse.preprocessor_arguments = split_preprocessor_arguments(*options_.preprocessor_arguments);
+      parse.preprocessor_arguments = split_arguments(*options_.preprocessor_arguments);
     }
     parse.flip_normals = options_.settings.flip_normals;
     parse.verbose = options_.verbose;

@@ -104,6 +104,8 @@ RayTree::RayTree(const ShadingScene& scene) : scene_(scene) {
 
 RayTree::~RayTree() = default;
 
+std::size_t RayTree::peak_nodes() const { return nodes_.size(); }
+
 std::uint32_t RayTree::allocate() {
   if (!free_.empty()) {
     const std::uint32_t id = free_.back();

@@ -91,7 +91,7 @@ class RayTree {
   TraceScratch& scratch() { return scratch_; }
   const ShadingCounts& counts() const { return counts_; }
   /// Largest number of tree nodes alive at once, a measure of pending work.
-  std::size_t peak_nodes() const { return nodes_.size(); }
+  std::size_t peak_nodes() const;
 
  private:
   struct Node;

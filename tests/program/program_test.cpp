@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+// Streams, exit codes, files and signals.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "rayshade/image/reader.h"
+#include "tests/program/run.h"
+
+namespace rayshade::testing_tools {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+namespace fs = std::filesystem;
+
+constexpr const char* kSmall = "screen 20 16\nsample 1 nojitter\nsphere diffuse .8 .2 .2 3 0 0 0\n";
+
+class ProgramTest : public ::testing::Test {
+ protected:
+  Folder folder;
+  fs::path path(const std::string& name) const { return folder.path() / name; }
+  Outcome go(const std::string& arguments, const std::string& input = {}) { return run(folder.path(), arguments, input); }
+};
+
+TEST_F(ProgramTest, HelpAndVersionGoToStandardOutput) {
+  const Outcome help = go("--help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_THAT(help.out, HasSubstr("usage: rayshade"));
+  EXPECT_EQ(help.err, "");
+  const Outcome version = go("--version");
+  EXPECT_EQ(version.status, 0);
+  EXPECT_THAT(version.out, ::testing::MatchesRegex("rayshade [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST_F(ProgramTest, WrongUsageIsOneLineAndExitCode2) {
+  const Outcome bad = go("-S3 x.ray");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.err, HasSubstr("-S3"));
+  EXPECT_THAT(bad.err, HasSubstr("Try 'rayshade --help'"));
+  EXPECT_EQ(bad.out, "");
+  EXPECT_EQ(go("--format gif x.ray").status, 2);
+}
+
+TEST_F(ProgramTest, SceneFromStandardInputPictureToStandardOutput) {
+  const Outcome done = go("-q -O - --format ppm", kSmall);
+  EXPECT_EQ(done.status, 0);
+  EXPECT_EQ(done.err, "");
+  EXPECT_EQ(done.out.substr(0, 12), "P6\n20 16\n255");
+  EXPECT_EQ(done.out.size(), std::string("P6\n20 16\n255\n").size() + 3 * 20 * 16);
+  // Without -O the picture goes to standard output as well.
+  EXPECT_EQ(go("-q --format ppm", kSmall).out, done.out);
+}
+
+TEST_F(ProgramTest, TheReportGoesToStandardErrorOrAFile) {
+  const Outcome loud = go("-O a.png", kSmall);
+  EXPECT_EQ(loud.status, 0);
+  EXPECT_EQ(loud.out, "");
+  EXPECT_THAT(loud.err, HasSubstr("Eye rays:"));
+  EXPECT_THAT(loud.err, Not(HasSubstr("\r")));
+  const Outcome filed = go("-V report.txt -O a.png", kSmall);
+  EXPECT_EQ(filed.err, "");
+  EXPECT_THAT(read_file(path("report.txt")), HasSubstr("Screen resolution: 20 x 16"));
+}
+
+TEST_F(ProgramTest, ASceneErrorHasItsPlaceAndLeavesNoPicture) {
+  write_file(path("bad.ray"), "sphere 1 0 0 0\nspere 2 0 0 0\n");
+  const Outcome bad = go("-O a.png bad.ray");
+  EXPECT_EQ(bad.status, 1);
+  EXPECT_THAT(bad.err, HasSubstr("bad.ray:2:1: error:"));
+  EXPECT_THAT(bad.err, HasSubstr("sphere"));
+  EXPECT_FALSE(fs::exists(path("a.png")));
+}
+
+TEST_F(ProgramTest, MissingFilesAreErrors) {
+  EXPECT_EQ(go("-O a.png none.ray").status, 1);
+  write_file(path("hf.ray"), "sphere 1 0 0 0\nheightfield nowhere.hf\n");
+  const Outcome missing = go("-O a.png hf.ray");
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_THAT(missing.err, HasSubstr("hf.ray:2:"));
+  EXPECT_THAT(missing.err, HasSubstr("nowhere.hf"));
+  write_file(path("tex.ray"), "sphere 1 0 0 0 texture image nowhere.png\n");
+  EXPECT_THAT(go("-O a.png tex.ray").err, HasSubstr("nowhere.png"));
+  EXPECT_FALSE(fs::exists(path("a.png")));
+}
+
+TEST_F(ProgramTest, AnUnwritablePictureKeepsThePreviousOne) {
+  ASSERT_EQ(go("-q -O a.png", kSmall).status, 0);
+  const std::string before = read_file(path("a.png"));
+  EXPECT_EQ(go("-q -O none/a.png", kSmall).status, 1);
+  EXPECT_EQ(go("-q -O a.png", "sphere 1 0 0 0 nonsense").status, 1);
+  EXPECT_EQ(read_file(path("a.png")), before);
+  // Nothing else is left behind.
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(folder.path())) files += entry.path().filename().string()[0] != '.';
+  EXPECT_EQ(files, 1);
+}
+
+TEST_F(ProgramTest, AFullDiskIsAnError) {
+  const Outcome full = go("-q -O /dev/full", kSmall);
+  EXPECT_EQ(full.status, 1);
+  EXPECT_THAT(full.err, HasSubstr("No space left"));
+}
+
+TEST_F(ProgramTest, SameSceneSameBytes) {
+  ASSERT_EQ(go("-q --threads 1 -O a.png", kSmall).status, 0);
+  ASSERT_EQ(go("-q --threads 3 --block 5 -O b.png", kSmall).status, 0);
+  EXPECT_EQ(read_file(path("a.png")), read_file(path("b.png")));
+}
+
+TEST_F(ProgramTest, StatisticsAreJson) {
+  ASSERT_EQ(go("-q --stats s.json -O a.png", kSmall).status, 0);
+  const auto stats = nlohmann::json::parse(read_file(path("s.json")));
+  EXPECT_EQ(stats["outcome"], "complete");
+  EXPECT_EQ(stats["rays"]["eye"], 20 * 16);
+  EXPECT_EQ(stats["sampling"]["nan_pixels"], 0);
+  EXPECT_EQ(stats["scene_hash"].get<std::string>().size(), 32u);
+}
+
+TEST_F(ProgramTest, CheckRendersNothing) {
+  write_file(path("ok.ray"), kSmall);
+  const Outcome ok = go("--check -O a.png ok.ray");
+  EXPECT_EQ(ok.status, 0);
+  EXPECT_THAT(ok.err, HasSubstr("1 primitive"));
+  EXPECT_FALSE(fs::exists(path("a.png")));
+  EXPECT_EQ(go("--check", "sphere").status, 1);
+}
+
+TEST_F(ProgramTest, TheDumpOfADumpIsTheDump) {
+  const Outcome once = go("--dump-scene", kSmall);
+  ASSERT_EQ(once.status, 0);
+  const Outcome twice = go("--dump-scene", once.out);
+  EXPECT_EQ(twice.out, once.out);
+  EXPECT_NE(once.out, "");
+  ASSERT_EQ(go("-q -O a.png", kSmall).status, 0);
+  ASSERT_EQ(go("-q -O b.png", once.out).status, 0);
+  EXPECT_EQ(read_file(path("a.png")), read_file(path("b.png")));
+}
+
+TEST_F(ProgramTest, ExplainPrintsTheRayTree) {
+  const Outcome told = go("--explain 10 8", kSmall);
+  EXPECT_EQ(told.status, 0);
+  EXPECT_THAT(told.out, HasSubstr("eye ray"));
+  EXPECT_THAT(told.out, HasSubstr("sphere"));
+  EXPECT_EQ(go("--explain 20 8", kSmall).status, 2);
+}
+
+TEST_F(ProgramTest, CostMapAndLayersAreWritten) {
+  ASSERT_EQ(go("-q --cost-map cost --layers l.pfm -O a.png", kSmall).status, 0);
+  for (const char* name : {"cost.tests.pfm", "cost.tests.png", "cost.microseconds.pfm", "cost.bounds_tests.png",
+                           "l.depth.Z.pfm", "l.normal.X.pfm", "l.object.pfm", "l.samples.pfm"}) {
+    EXPECT_TRUE(fs::exists(path(name))) << name;
+  }
+}
+
+TEST_F(ProgramTest, FramesGoToNumberedFilesOrOneAfterTheOther) {
+  const std::string moving = std::string(kSmall) + "sphere 1 0 0 0 translate (frame) 0 0\n";
+  ASSERT_EQ(go("-q -N 3 -A 5 -O f.%03d.png", moving).status, 0);
+  EXPECT_TRUE(fs::exists(path("f.005.png")) && fs::exists(path("f.006.png")) && fs::exists(path("f.007.png")));
+  EXPECT_FALSE(fs::exists(path("f.008.png")));
+  ASSERT_EQ(go("-q -N 3 -O all.ppm", moving).status, 0);
+  ASSERT_EQ(go("-q -O one.ppm", moving).status, 0);
+  EXPECT_EQ(fs::file_size(path("all.ppm")), 3 * fs::file_size(path("one.ppm")));
+  EXPECT_EQ(go("-q -N 3 -O all.png", moving).status, 2);
+}
+
+TEST_F(ProgramTest, AbsurdSizesAreRefusedBeforeMemoryIsTaken) {
+  const auto start = std::chrono::steady_clock::now();
+  const Outcome huge = go("-q -R 1000000 1000000 -O a.png", kSmall);
+  EXPECT_EQ(huge.status, 1);
+  EXPECT_THAT(huge.err, HasSubstr("memory"));
+  EXPECT_EQ(go("-q --memory 1K -O a.png", kSmall).status, 1);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+}
+
+/// Starts the program on a scene that takes long, in the background.
+class SignalTest : public ProgramTest {
+ protected:
+  pid_t start(const std::string& extra) {
+    write_file(path("slow.ray"),
+               "screen 4000 4000\nsample 8\ncontrast 0 0 0\nsphere reflect .5 specular 1 1 1 3 0 0 0\n"
+               "sphere reflect .5 specular 1 1 1 2 3 0 0\nplane 0 0 -2 0 0 1 texture marble\n");
+    const pid_t child = fork();
+    if (child == 0) {
+      if (chdir(folder.path().c_str()) != 0) _exit(127);
+      if (!freopen("log", "w", stderr)) _exit(127);
+      execl("/bin/sh", "sh", "-c", ("exec '" + program() + "' -O slow.png " + extra + " slow.ray").c_str(), nullptr);
+      _exit(127);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    return child;
+  }
+  int wait_for(pid_t child) {
+    for (int i = 0; i < 300; ++i) {
+      int status = 0;
+      if (waitpid(child, &status, WNOHANG) == child) return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    return -1;
+  }
+};
+
+TEST_F(SignalTest, TermKeepsThePartialPictureAndExitsWith3) {
+  const pid_t child = start("--stats s.json");
+  kill(child, SIGTERM);
+  EXPECT_EQ(wait_for(child), 3);
+  EXPECT_FALSE(fs::exists(path("slow.png")));
+  const std::string bytes = read_file(path("slow.partial.png"));
+  ASSERT_NE(bytes, "");
+  EXPECT_EQ(read_image(bytes, "slow.partial.png").width, 4000);
+  EXPECT_EQ(nlohmann::json::parse(read_file(path("s.json")))["outcome"], "stopped");
+}
+
+TEST_F(SignalTest, HangUpWritesThePartialPictureAndGoesOn) {
+  const pid_t child = start("-q");
+  kill(child, SIGHUP);
+  for (int i = 0; i < 100 && !fs::exists(path("slow.partial.png")); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  EXPECT_TRUE(fs::exists(path("slow.partial.png")));
+  EXPECT_EQ(kill(child, 0), 0);
+  kill(child, SIGINT);
+  EXPECT_EQ(wait_for(child), 3);
+}
+
+}  // namespace
+}  // namespace rayshade::testing_tools
