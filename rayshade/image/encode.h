@@ -63,11 +63,11 @@ class ColorEncoder {
   double exponent_ = 1;
   bool identity_ = true;
   bool tabled_ = false;
-  // Code k is certain for below_[k] < v < above_[k+1]; between lies the formula's own ground.
+  // A value from certain_from_[k] to certain_to_[k] has code k; the narrow gaps between are left to the
+  // formula.
   static constexpr int kBuckets = 1024;
-  std::array<double, 257> below_{};
-  std::array<double, 257> above_{};
-  std::array<std::uint8_t, kBuckets + 2> first_{};
+  std::array<double, 257> certain_from_{}, certain_to_{};
+  std::array<std::uint8_t, kBuckets + 1> first_{};  // the code at the lower end of each bucket of values
 };
 
 }  // namespace rayshade

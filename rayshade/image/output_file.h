@@ -31,7 +31,9 @@ class OutputFile : public Sink {
 
   /// Marks the end of a whole frame: commit_marked() drops what follows the last mark.
   void mark() { mark_ = written_; }
-  std::uint64_t written() const { return written_; }
+  std::uint64_t written() const override { return written_; }
+  bool can_overwrite() const override { return !direct(); }
+  void overwrite(std::uint64_t offset, const void* data, std::size_t size) override;
 
   /// Flushes, checks and renames. Afterwards nothing more can be written. Throws WriteError; the target is
   /// then as it was before.
@@ -43,18 +45,22 @@ class OutputFile : public Sink {
   bool commit_marked(const std::string& path);
 
   const std::string& path() const { return path_; }
-  /// True for standard output, pipes and devices: bytes are out at once, commit() only flushes.
+  /// True for standard output, pipes and devices: what was written cannot be taken back, commit() only
+  /// flushes.
   bool direct() const { return temporary_.empty(); }
 
  private:
+  void open_temporary();
+  void copy_present_content();
   void flush();
-  [[noreturn]] void fail(const std::string& path, int error) const;
   void discard() noexcept;
 
-  std::string path_, temporary_, buffer_;
+  std::string path_;       // as given, for messages
+  std::string target_;     // with symbolic links followed
+  std::string temporary_;  // empty where bytes go out directly
+  std::string buffer_;
   int file_ = -1;
-  bool owns_ = true;
-  bool done_ = false;
+  bool owns_file_ = true;
   std::uint64_t written_ = 0, mark_ = 0;
 };
 

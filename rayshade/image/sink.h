@@ -21,6 +21,14 @@ class Sink {
   /// Takes all bytes or throws WriteError.
   virtual void write(const void* data, std::size_t size) = 0;
   void write(std::string_view text) { write(text.data(), text.size()); }
+
+  /// Whether bytes already written can be replaced. EXR files need that (their table of rows stands before
+  /// the rows); they go through a temporary file where it is not so.
+  virtual bool can_overwrite() const { return false; }
+  /// Replaces bytes from `offset` on, all of them written before. Only where can_overwrite().
+  virtual void overwrite(std::uint64_t offset, const void* data, std::size_t size);
+  /// Bytes written so far.
+  virtual std::uint64_t written() const = 0;
 };
 
 /// Collects bytes.
@@ -30,6 +38,9 @@ class MemorySink : public Sink {
     bytes_.append(static_cast<const char*>(data), size);
   }
   using Sink::write;
+  bool can_overwrite() const override { return true; }
+  void overwrite(std::uint64_t offset, const void* data, std::size_t size) override;
+  std::uint64_t written() const override { return bytes_.size(); }
   const std::string& bytes() const { return bytes_; }
 
  private:
