@@ -7,14 +7,15 @@
 
 namespace rayshade {
 
-/// Roots in ascending order; either may be infinite or NaN where the quadratic has fewer: compare so that these fail.
+/// Roots in ascending order; either may be infinite or NaN where the quadratic has fewer: compare so that
+/// these fail.
 struct QuadraticRoots {
   double near, far;
 };
 
-/// Roots of a t^2 + 2 b t + c from the root of b^2 - a c, which the caller knows better than this function could:
-/// q/a and c/q with q = -(b + sign(b) root), so that nothing cancels. a = 0 leaves the root of 2 b t + c and an
-/// infinite (or NaN) one. b = root = 0 is a double root at zero.
+/// Roots of a t^2 + 2 b t + c from the root of b^2 - a c, which the caller knows better than this function
+/// could: q/a and c/q with q = -(b + sign(b) root), so that nothing cancels. a = 0 leaves the root of 2 b t +
+/// c and an infinite (or NaN) one. b = root = 0 is a double root at zero.
 inline QuadraticRoots quadratic_roots(double a, double b, double c, double root) {
   const double q = b < 0 ? root - b : -(root + b);
   if (q == 0) return {0 / a, 0 / a};
@@ -46,7 +47,8 @@ inline double product_difference(double a, double b, double c, double d) {
   return (p.high - q.high) + (p.low - q.low);
 }
 
-/// Whether a t^2 + 2 b t + c has real roots, and which. The discriminant is computed as if in twice the precision.
+/// Whether a t^2 + 2 b t + c has real roots, and which. The discriminant is computed as if in twice the
+/// precision.
 inline bool solve_quadratic(double a, double b, double c, QuadraticRoots& roots) {
   const double discriminant = product_difference(b, b, a, c);
   if (!(discriminant >= 0)) return false;

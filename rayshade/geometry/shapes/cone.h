@@ -27,12 +27,8 @@ class Cone {
   Bounds3 bounds() const { return wall_.bounds(); }
 
  private:
-  /// `ends` sorted so that the smaller radius comes first; both made positive if none is.
-  static shape::Cone ordered(shape::Cone cone);
-  explicit Cone(const shape::Cone& ordered_cone, int);
-
-  Wall wall_;
-  double large_radius_;
+  Wall wall_;  ///< from the smaller radius to the larger
+  double small_radius_, large_radius_;
 };
 
 }  // namespace rayshade

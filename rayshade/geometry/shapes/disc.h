@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rayshade/geometry/ray.h"
-#include "rayshade/geometry/shapes/rounding.h"
+#include "rayshade/geometry/shapes/flat.h"
 #include "rayshade/math/bounds.h"
 #include "rayshade/scene/shape.h"
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The unit of the error bounds that shapes report (SurfacePoint::error).
 //
-// Bounds are first-order sums in the manner of Higham (Accuracy and Stability of Numerical Algorithms, ch. 3): a
-// computed product, quotient, sum or root is the exact one times (1 + e) with |e| <= kRoundoff, so n operations in a
-// row cost at most n kRoundoff of the sizes that took part. The terms of second order are covered by rounding every
-// count up. A bound speaks of the distance along the normal only: where on the surface the point lies does not matter.
+// Bounds are first-order sums in the manner of Higham (Accuracy and Stability of Numerical Algorithms, ch.
+// 3): a computed product, quotient, sum or root is the exact one times (1 + e) with |e| <= kRoundoff, so n
+// operations in a row cost at most n kRoundoff of the sizes that took part. The terms of second order are
+// covered by rounding every count up. A bound speaks of the distance along the normal only: where on the
+// surface the point lies does not matter.
 #pragma once
 
 #include "rayshade/math/vec.h"
@@ -16,10 +17,8 @@ inline constexpr double kRoundoff = 0x1p-53;
 /// Half an ulp in each coordinate of a stored point: at most kRoundoff |p| along any unit normal.
 inline double storage_error(const Vec3& p) { return kRoundoff * length(p); }
 
-/// Edge-on rejection (objects.md 2): a surface is missed where |normal . direction| < kEpsilon for unit vectors. Takes
-/// the squares, so that neither needs to be of unit length.
-inline bool edge_on(double normal_dot_direction, double normal_square, double direction_square) {
-  return !(normal_dot_direction * normal_dot_direction >= kEpsilon * kEpsilon * normal_square * direction_square);
-}
+/// Relative error of each component of what normalize() returns: two squares' sums, root and quotient
+/// cost 3.5.
+inline constexpr double kNormalizeError = 4 * kRoundoff;
 
 }  // namespace rayshade

@@ -14,7 +14,7 @@
 #include <cmath>
 
 #include "rayshade/geometry/ray.h"
-#include "rayshade/geometry/shapes/rounding.h"
+#include "rayshade/geometry/shapes/flat.h"
 #include "rayshade/math/bounds.h"
 #include "rayshade/scene/shape.h"
 
