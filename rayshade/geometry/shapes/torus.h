@@ -12,6 +12,7 @@
 #pragma once
 
 #include "rayshade/geometry/ray.h"
+#include "rayshade/geometry/shapes/frame.h"
 #include "rayshade/math/bounds.h"
 #include "rayshade/scene/shape.h"
 
@@ -30,13 +31,10 @@ class Torus {
   Bounds3 bounds() const { return bounds_; }
 
  private:
-  /// Components along the axes of the frame.
-  Vec3 local(const Vec3& v) const { return {dot(v, axes_[0]), dot(v, axes_[1]), dot(v, axes_[2])}; }
-  Vec3 outward(const Vec3& v) const { return v.x * axes_[0] + v.y * axes_[1] + v.z * axes_[2]; }
   /// The unnormalised outward normal of objects.md 4.9 at a local point.
   Vec3 local_normal(const Vec3& p) const;
 
-  Vec3 axes_[3];  ///< unit; axes_[2] is the axis of the torus, axes_[0] is where u = 0
+  AxisFrame frame_;  ///< rows[2]: the axis; rows[0]: where u = 0
   Vec3 center_;
   double swept_;  ///< R
   double tube_;   ///< r
