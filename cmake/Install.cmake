@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 # What `make install` and the Debian package hold: programs, scenes, manual pages, completion.
-install(TARGETS rayshade spd DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS rayshade DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(TARGET spd)
+  install(PROGRAMS $<TARGET_FILE:spd> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME rayshade-spd)
+endif()
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rayshade/scenes
   FILES_MATCHING PATTERN "*.ray" PATTERN "*.png" PATTERN "*.ppm" PATTERN "*.hf" PATTERN "*.map" PATTERN "spd" EXCLUDE)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
