@@ -267,7 +267,7 @@ Precedence loosest(Operation op, int index) {
 struct Expression::Node {
   Operation op;
   int depth = 1;    ///< levels of the tree
-  int nodes = 1;    ///< operations, counted as often as they are used
+  int nodes = 1;    ///< operations that vary, counted as often as they are used
   int nesting = 0;  ///< levels of its text that a parser must stack
   std::array<Expression, 4> operands;
 
@@ -385,8 +385,6 @@ Expression Expression::apply(Operation op, std::array<Expression, 4> operands) {
       node->depth = std::max(node->depth, operand.node_->depth + 1);
       node->nesting = std::max(node->nesting, operand.node_->nesting + inner);
       nodes += operand.node_->nodes;
-    } else {
-      ++nodes;
     }
     node->operands[static_cast<std::size_t>(i)] = std::move(operand);
   }
