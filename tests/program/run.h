@@ -47,7 +47,11 @@ struct Outcome {
   std::string out, err;
 };
 
-inline std::string program() { return std::string(BINARY_DIR) + "/bin/rayshade"; }
+/// The program of this build, or the one that RAYSHADE_PROGRAM names.
+inline std::string program() {
+  const char* other = std::getenv("RAYSHADE_PROGRAM");
+  return other ? other : std::string(BINARY_DIR) + "/bin/rayshade";
+}
 
 /// Runs `rayshade ARGUMENTS` (words as a shell reads them) in `folder`, killed after `seconds`, with at most
 /// `kilobytes` of address space where given.
