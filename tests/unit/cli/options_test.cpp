@@ -22,7 +22,7 @@ TEST(OptionTableTest, LettersAndNamesAreUniqueAndEveryLetterOfTheOriginalIsThere
   std::set<char> letters;
   std::set<std::string> names;
   for (const OptionSpec& spec : option_table()) {
-    if (spec.letter) EXPECT_TRUE(letters.insert(spec.letter).second) << spec.letter;
+    EXPECT_TRUE(!spec.letter || letters.insert(spec.letter).second) << spec.letter;
     EXPECT_TRUE(names.insert(spec.name).second) << spec.name;
     EXPECT_NE(std::string(spec.help), "");
   }
