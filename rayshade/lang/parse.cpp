@@ -9,6 +9,7 @@
 #include "rayshade/lang/builder.h"
 #include "rayshade/lang/context.h"
 #include "rayshade/lang/messages.h"
+#include "rayshade/lang/preprocessor.h"
 #include "rayshade/lang/scanner_state.h"
 #include "rayshade/lang/source_map.h"
 
@@ -16,27 +17,41 @@ namespace rayshade {
 namespace lang {
 namespace {
 
-/// Reads the scene into `text`. False, with a message, where it cannot be read.
-bool load(Provider& provider, const std::string& name, std::string* text, SourceMap& sources,
-          Messages& messages) {
+/// Reads and preprocesses the scene into `text`. False, with messages, where there is nothing to parse.
+bool load(Provider& provider, const std::string& name, Context& context, std::string* text) {
   const std::string shown = name == "-" ? "stdin" : name;
-  sources.add_source(shown);
+  const ParseOptions& options = context.options;
+  context.sources.add_source(shown);
+  Bytes bytes;
   try {
-    *text = *provider.read(name);
+    bytes = provider.read(name);
   } catch (const ProviderError& error) {
-    messages.error_in_file(shown, fmt::format("cannot read the scene: {}", error.what()));
+    context.messages.error_in_file(shown, fmt::format("cannot read the scene: {}", error.what()));
     return false;
   }
-  return true;
+  const bool wanted = options.preprocessing == Preprocessing::kAlways ||
+                      (options.preprocessing == Preprocessing::kAuto && has_directive(*bytes));
+  if (!wanted) {
+    *text = *bytes;
+    return true;
+  }
+  context.sources.keep(0, std::move(bytes));
+  Preprocessor preprocessor(provider, context.sources, context.messages);
+  preprocessor.set_arguments(options.preprocessor_arguments);
+  *text = preprocessor.run(name);
+  return !context.messages.stopped();
 }
 
-void parse_text(std::string& text, SourceMap& sources, Context& context) {
+void parse_text(std::string& text, Context& context) {
   if (text.size() > kMostScannedBytes) {
     context.messages.error_in_file(context.scene.file_names.front(), "the scene is longer than 2 GiB");
     return;
   }
   text.append(2, '\0');
-  Scanner scanner(text, sources, context.messages);
+  // Without preprocessing the text is the source itself.
+  if (context.sources.text(0).empty())
+    context.sources.set_text(0, std::string_view(text).substr(0, text.size() - 2));
+  Scanner scanner(text, context.sources, context.messages);
   SceneBuilder builder(context);
   run_parser(scanner, builder);
 }
@@ -50,10 +65,7 @@ ParseResult parse_scene(Provider& provider, const std::string& name, const Parse
   lang::Messages messages(sources, options.max_errors);
   lang::Context context{result.scene, sources, messages, options, result.prints};
   std::string text;
-  if (lang::load(provider, name, &text, sources, messages)) {
-    sources.set_text(0, text);
-    lang::parse_text(text, sources, context);
-  }
+  if (lang::load(provider, name, context, &text)) lang::parse_text(text, context);
   result.diagnostics = messages.take();
   result.ok = messages.errors() == 0;
   return result;
