@@ -110,6 +110,11 @@ struct CompileCounts {
 
 class CompiledScene {
  public:
+  CompiledScene() = default;
+  CompiledScene(const CompiledScene&) = delete;
+  CompiledScene& operator=(const CompiledScene&) = delete;
+
+
   const Scene* scene = nullptr;         ///< must outlive this
   std::vector<Leaf> leaves;
   std::vector<Group> groups;            ///< groups[0] is the world
@@ -162,9 +167,14 @@ class CompiledScene {
   double frame = 0;
 
  private:
-  friend class Compiler;
-  void rebuild_groups(bool hierarchies);
+  friend std::unique_ptr<CompiledScene> compile_scene(const Scene&, Provider&, const CompileOptions&);
+  void rebuild(bool hierarchies);
+  void place_animated();
+  void set_tolerances();
   void rebuild_group(Group& group, bool hierarchies);
+  Bounds3 group_bounds(std::uint32_t group) const;
+  Bounds3 csg_bounds(const Csg& csg) const;
+  double leaf_condition(const Leaf& leaf) const;
   void count_bytes();
 };
 

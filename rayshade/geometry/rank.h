@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Which of several equally near hits wins (objects.md 2 and 6.2), as one number: the smaller rank.
 //
-// The original lowers the far limit of a ray with every hit. Kinds whose upper test is t <= hi (disc, triangle, polygon,
-// CSG) therefore take an equal hit away from whatever was tested before, and the last of them keeps it; kinds with
-// t < hi never take one, so among them the first tested keeps it. The same bit tells whether a hit exactly at the far
-// limit of its ray counts.
+// The original lowers the far limit of a ray with every hit. Kinds whose upper test is t <= hi (disc,
+// triangle, polygon, CSG) therefore take an equal hit away from whatever was tested before, and the last of
+// them keeps it; kinds with t < hi never take one, so among them the first tested keeps it. The same bit
+// tells whether a hit exactly at the far limit of its ray counts.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,8 @@ constexpr bool closed_at_far_limit(LeafKind kind) {
   }
 }
 
-/// `order`: of the leaf that was tested (the outermost CSG object's, inside CSG), instances before it included.
+/// `order`: of the leaf that was tested (the outermost CSG object's, inside CSG), instances before it
+/// included.
 constexpr std::uint64_t rank_of(LeafKind kind, std::uint64_t order) {
   return closed_at_far_limit(kind) ? kFirstStrictRank - 1 - order : kFirstStrictRank + order;
 }

@@ -38,7 +38,6 @@ class MotionCache {
     AffinePair map;
   };
   /// Rays of a batch have as many times as it has samples, so every transform has several entries, by a hash of time.
-  static constexpr std::size_t kWays = 64;
   static Entry& entry(std::vector<std::vector<Entry>>& table, std::size_t size, std::uint32_t index, double time);
   std::vector<std::vector<Entry>> placements_, levels_;
 };

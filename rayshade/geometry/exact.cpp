@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+// exact(leaf, ray, interval), and the loops over groups.
+#include <numeric>
+
+#include "rayshade/geometry/hierarchy.h"
+#include "rayshade/geometry/trace_context.h"
+
+namespace rayshade {
+namespace {
+
+/// The ray in the space of leaf after leaf: neighbours mostly share their placement.
+class LocalRay {
+ public:
+  explicit LocalRay(const Ray& outer) : outer_(outer) {}
+  const Ray& in(TraceContext& context, const Leaf& leaf) {
+    if (leaf.placement == kNone) return outer_;
+    if (leaf.placement != placement_) {
+      placement_ = leaf.placement;
+      local_ = transformed(outer_, context.placement_of(leaf.placement, leaf.animated, outer_.time).inverse);
+    }
+    return local_;
+  }
+
+ private:
+  const Ray& outer_;
+  std::uint32_t placement_ = kNone;
+  Ray local_;
+};
+
+template <class Shape>
+bool improve_by_shape(TraceContext& context, const Shape& shape, const Leaf& leaf, LeafId id,
+                      const Ray& local, double lo, std::uint64_t base, Hit& best) {
+  ++context.tests;
+  TraceCounts& counts = context.scratch.counts;
+  ++counts.tests[static_cast<std::size_t>(leaf.kind)];
+  ShapeHit hit;
+  if (!shape.intersect(local, lo, best.shape.t, hit)) return false;
+  const std::uint64_t rank = rank_of(leaf.kind, base + leaf.order);
+  if (hit.t == best.shape.t && rank >= best.rank) return false;
+  ++counts.hits[static_cast<std::size_t>(leaf.kind)];
+  best.shape = hit;
+  best.leaf = id;
+  best.flag = EnterFlag::kUnset;
+  best.rank = rank;
+  best.instances = context.instances;
+  return true;
+}
+
+bool improve_by_instance(TraceContext& context, LeafId id, const Leaf& leaf, const Ray& inner, double lo,
+                         Opacity mask, std::uint64_t base, Hit& best) {
+  InstancePath& path = context.instances;
+  if (path.count >= InstancePath::kCapacity) return false;  // the compile step refuses such scenes
+  path.leaves[path.count++] = id;
+  const bool improved = improve_by_group(context, context.scene.instances[leaf.shape].group, inner, lo, mask,
+                                         base + leaf.order, best);
+  --path.count;
+  return improved;
+}
+
+/// The one switch over kinds.
+inline bool improve(TraceContext& context, LeafId id, const Leaf& leaf, const Ray& ray, LocalRay& local,
+                    double lo, Opacity mask, std::uint64_t base, Hit& best) {
+  const CompiledScene& scene = context.scene;
+  const auto shape = [&](const auto& pool) {
+    return improve_by_shape(context, pool[leaf.shape], leaf, id, local.in(context, leaf), lo, base, best);
+  };
+  switch (leaf.kind) {
+    case LeafKind::kPlane:
+      return shape(scene.planes);
+    case LeafKind::kSphere:
+      return shape(scene.spheres);
+    case LeafKind::kBox:
+      return shape(scene.boxes);
+    case LeafKind::kDisc:
+      return shape(scene.discs);
+    case LeafKind::kCylinder:
+      return shape(scene.cylinders);
+    case LeafKind::kCone:
+      return shape(scene.cones);
+    case LeafKind::kTorus:
+      return shape(scene.tori);
+    case LeafKind::kTriangle:
+      return shape(scene.triangles);
+    case LeafKind::kSmoothTriangle:
+      return shape(scene.smooth_triangles);
+    case LeafKind::kUvTriangle:
+      return shape(scene.uv_triangles);
+    case LeafKind::kPolygon:
+      return shape(scene.polygons);
+    case LeafKind::kBlob:
+      return shape(scene.blobs);
+    case LeafKind::kHeightField:
+      return shape(scene.height_fields);
+    case LeafKind::kCsg:
+      return improve_by_csg(context, leaf, ray, lo, base, best);
+    case LeafKind::kInstance:
+      return improve_by_instance(context, id, leaf, local.in(context, leaf), lo, mask, base, best);
+  }
+  return false;
+}
+
+bool occludes(TraceContext& context, LeafId id, const Leaf& leaf, const Ray& ray, LocalRay& local, double lo,
+              double hi, Opacity mask) {
+  if (leaf.kind == LeafKind::kInstance) {
+    if ((leaf.opacity & mask) == 0) return false;
+    return group_occludes(context, context.scene.instances[leaf.shape].group, local.in(context, leaf), lo, hi,
+                          mask);
+  }
+  if ((leaf.opacity & ~mask) != 0) return false;
+  Hit hit;
+  start_search(hit, hi);
+  return improve(context, id, leaf, ray, local, lo, mask, 0, hit) && before_far_limit(hit, hi);
+}
+
+/// Runs `test(first, last)` over runs of leaves of a group that the ray may meet, until it answers true.
+template <class Limit, class Test>
+bool over_group(TraceContext& context, const Group& group, const Ray& ray, double lo, Opacity mask,
+                const Limit& limit, const Test& test) {
+  if (context.scratch.brute_force) return test(group.first, group.first + group.count);
+  const LeafId bounded = group.first + group.unbounded;
+  if (group.unbounded > 0 && test(group.first, bounded)) return true;
+  if (group.unbounded == group.count) return false;
+  ++context.bounds_tests;
+  if (!group.hierarchy) {
+    return clip_to_box(group.bounds, group.condition, ray, lo, limit()) &&
+           test(bounded, group.first + group.count);
+  }
+  BoxProbe probe;
+  if (!make_probe(group.bounds, group.condition, ray, lo, limit(), probe)) return false;
+  if (!probe.usable) return test(bounded, group.first + group.count);
+  return traverse(*group.hierarchy, probe, mask, context.bounds_tests, limit,
+                  [&](std::uint32_t first, std::uint32_t count) {
+                    return test(bounded + first, bounded + first + count);
+                  });
+}
+
+}  // namespace
+
+bool improve_by_leaf(TraceContext& context, LeafId id, const Ray& ray, double lo, Opacity mask,
+                     std::uint64_t base, Hit& best) {
+  LocalRay local(ray);
+  return improve(context, id, context.scene.leaves[id], ray, local, lo, mask, base, best);
+}
+
+bool improve_by_group(TraceContext& context, std::uint32_t index, const Ray& ray, double lo, Opacity mask,
+                      std::uint64_t base, Hit& best) {
+  LocalRay local(ray);
+  bool improved = false;
+  over_group(
+      context, context.scene.groups[index], ray, lo, mask, [&] { return best.shape.t; },
+      [&](LeafId first, LeafId last) {
+        for (LeafId id = first; id < last; ++id) {
+          const Leaf& leaf = context.scene.leaves[id];
+          if ((leaf.opacity & mask) == 0) continue;
+          improved |= improve(context, id, leaf, ray, local, lo, mask, base, best);
+        }
+        return false;
+      });
+  return improved;
+}
+
+bool group_occludes(TraceContext& context, std::uint32_t index, const Ray& ray, double lo, double hi,
+                    Opacity mask) {
+  LocalRay local(ray);
+  return over_group(
+      context, context.scene.groups[index], ray, lo, mask, [&] { return hi; },
+      [&](LeafId first, LeafId last) {
+        for (LeafId id = first; id < last; ++id) {
+          if (occludes(context, id, context.scene.leaves[id], ray, local, lo, hi, mask)) return true;
+        }
+        return false;
+      });
+}
+
+bool primitive_enters(const CompiledScene& scene, const Leaf& leaf, const Ray& local, double lo,
+                      const ShapeHit& hit) {
+  switch (leaf.kind) {
+    case LeafKind::kPlane:
+      return scene.planes[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kSphere:
+      return scene.spheres[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kBox:
+      return scene.boxes[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kDisc:
+      return scene.discs[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kCylinder:
+      return scene.cylinders[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kCone:
+      return scene.cones[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kTorus:
+      return scene.tori[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kTriangle:
+      return scene.triangles[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kSmoothTriangle:
+      return scene.smooth_triangles[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kUvTriangle:
+      return scene.uv_triangles[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kPolygon:
+      return scene.polygons[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kBlob:
+      return scene.blobs[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kHeightField:
+      return scene.height_fields[leaf.shape].entering(local, lo, hit);
+    case LeafKind::kCsg:
+    case LeafKind::kInstance:
+      break;
+  }
+  return true;
+}
+
+bool exact_nearest(const CompiledScene& scene, LeafId leaf, const Ray& ray, double lo, double hi,
+                   std::uint64_t order_base, TraceScratch& scratch, Hit& hit) {
+  TraceContext context(scene, scratch);
+  context.instances = hit.instances;
+  Hit best;
+  start_search(best, hi);
+  if (!improve_by_leaf(context, leaf, ray, lo, kAnyOpacity, order_base, best)) return false;
+  hit = best;
+  return true;
+}
+
+bool nearest_in_group(const CompiledScene& scene, std::uint32_t group, const Ray& ray, double lo, double hi,
+                      Opacity mask, std::uint64_t order_base, TraceScratch& scratch, Hit& hit) {
+  TraceContext context(scene, scratch);
+  context.instances = hit.instances;
+  Hit best;
+  start_search(best, hi);
+  if (!improve_by_group(context, group, ray, lo, mask, order_base, best) || !before_far_limit(best, hi))
+    return false;
+  hit = best;
+  return true;
+}
+
+bool occluded_in_group(const CompiledScene& scene, std::uint32_t group, const Ray& ray, double lo, double hi,
+                       Opacity mask, TraceScratch& scratch) {
+  TraceContext context(scene, scratch);
+  return group_occludes(context, group, ray, lo, hi, mask);
+}
+
+void TraceCounts::add(const TraceCounts& other) {
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    tests[i] += other.tests[i];
+    hits[i] += other.hits[i];
+  }
+  bounds_tests += other.bounds_tests;
+}
+
+std::uint64_t TraceCounts::total_tests() const {
+  return std::accumulate(tests.begin(), tests.begin() + kPrimitiveKinds, std::uint64_t{0});
+}
+
+}  // namespace rayshade

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Inside the intersectors: one query on its way through groups, instances and CSG. `best` holds the far limit
+// (its t) and, once something is found, the hit; everything narrows it by (t, rank). All of these answer
+// "improved".
+#pragma once
+
+#include <limits>
+
+#include "rayshade/geometry/trace.h"
+
+namespace rayshade {
+
+struct TraceContext {
+  const CompiledScene& scene;
+  TraceScratch& scratch;
+  std::uint32_t tests = 0;
+  std::uint32_t bounds_tests = 0;
+  InstancePath instances;  ///< entered so far, outermost first
+
+  TraceContext(const CompiledScene& s, TraceScratch& c) : scene(s), scratch(c) {}
+  TraceContext(const TraceContext&) = delete;
+  TraceContext& operator=(const TraceContext&) = delete;
+  ~TraceContext() { scratch.counts.bounds_tests += bounds_tests; }
+
+  const AffinePair& placement_of(std::uint32_t placement, bool animated, double time) {
+    return animated ? scratch.motion.placement(scene, placement, time) : scene.placements[placement].map;
+  }
+};
+
+/// Nothing found yet; hits up to and including `hi` are of interest.
+inline void start_search(Hit& best, double hi) {
+  best.shape.t = hi;
+  best.rank = std::numeric_limits<std::uint64_t>::max();
+}
+
+bool improve_by_leaf(TraceContext& context, LeafId leaf, const Ray& ray, double lo, Opacity mask,
+                     std::uint64_t base, Hit& best);
+bool improve_by_group(TraceContext& context, std::uint32_t group, const Ray& ray, double lo, Opacity mask,
+                      std::uint64_t base, Hit& best);
+/// In csg.cpp.
+bool improve_by_csg(TraceContext& context, const Leaf& leaf, const Ray& ray, double lo, std::uint64_t base,
+                    Hit& best);
+bool group_occludes(TraceContext& context, std::uint32_t group, const Ray& ray, double lo, double hi,
+                    Opacity mask);
+/// The enter test of objects.md 3 for a primitive.
+bool primitive_enters(const CompiledScene& scene, const Leaf& leaf, const Ray& local, double lo,
+                      const ShapeHit& hit);
+
+}  // namespace rayshade
