@@ -44,7 +44,8 @@ struct CanonicalRay {
 
 }  // namespace
 
-Torus::Torus(const shape::Torus& torus) : center_(torus.center), swept_(torus.swept), tube_(torus.tube) {
+Torus::Torus(const shape::Torus& torus)
+    : frame_(axis_frame(torus.axis)), center_(torus.center), swept_(torus.swept), tube_(torus.tube) {
   // The silhouette of a ring: R sin(angle between its axis and the coordinate axis) + r along each
   // coordinate.
   Vec3 reach;
