@@ -2,6 +2,7 @@
 // The axis-aligned box (objects.md 4.3), by slabs, on its exact extent.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -17,18 +18,32 @@ class Box {
 
   /// The entry t0 if t0 > lo, else the exit t1 if t1 >= lo; t <= hi. hit.part: 2 * axis, plus 1 for the high
   /// face.
+  ///
+  /// Divisions, not reciprocals: a face that two boxes share gives both the same t, rounded once.
   bool intersect(const Ray& ray, double lo, double hi, ShapeHit& hit) const {
-    double entry = -std::numeric_limits<double>::infinity(), exit = -entry;
-    std::uint32_t entry_face = 0, exit_face = 0;
-    const bool meets =
-        clip(ray.origin.x, ray.direction.x, lo_.x, hi_.x, 0, entry, exit, entry_face, exit_face) &&
-        clip(ray.origin.y, ray.direction.y, lo_.y, hi_.y, 2, entry, exit, entry_face, exit_face) &&
-        clip(ray.origin.z, ray.direction.z, lo_.z, hi_.z, 4, entry, exit, entry_face, exit_face);
-    if (!meets || !(exit >= lo)) return false;
-    const double t = entry > lo ? entry : exit;
+    const Vec3 &o = ray.origin, &d = ray.direction;
+    Slab x{(lo_.x - o.x) / d.x, (hi_.x - o.x) / d.x};
+    Slab y{(lo_.y - o.y) / d.y, (hi_.y - o.y) / d.y};
+    Slab z{(lo_.z - o.z) / d.z, (hi_.z - o.z) / d.z};
+    if (d.x * d.y * d.z == 0) {  // or the product underflows; then nothing changes here
+      if (d.x == 0) x = parallel_slab(o.x, lo_.x, hi_.x);
+      if (d.y == 0) y = parallel_slab(o.y, lo_.y, hi_.y);
+      if (d.z == 0) z = parallel_slab(o.z, lo_.z, hi_.z);
+    }
+    const double entry = std::max(std::max(x.near(), y.near()), z.near());
+    const double exit = std::min(std::min(x.far(), y.far()), z.far());
+    if (!(entry <= exit && exit >= lo)) return false;
+    const bool from_outside = entry > lo;
+    const double t = from_outside ? entry : exit;
     if (!(t <= hi && t < std::numeric_limits<double>::infinity())) return false;
     hit.t = t;
-    hit.part = entry > lo ? entry_face : exit_face;
+    const std::uint32_t axis = from_outside ? (t == x.near()   ? 0
+                                               : t == y.near() ? 1
+                                                               : 2)
+                                            : (t == x.far()   ? 0
+                                               : t == y.far() ? 1
+                                                              : 2);
+    hit.part = 2 * axis + (from_outside == (d[static_cast<int>(axis)] < 0) ? 1 : 0);
     return true;
   }
   SurfacePoint surface_point(const Ray& ray, const ShapeHit& hit) const;
@@ -44,17 +59,17 @@ class Box {
   Bounds3 bounds() const { return {lo_, hi_}; }
 
  private:
-  /// Narrows [entry, exit] to the slab [a, b]; false where nothing remains. A component of exactly zero, of
-  /// either sign, asks whether the origin is within the closed slab. Division, not a reciprocal: a shared
-  /// face of two boxes gives both the same t, rounded once.
-  static bool clip(double o, double d, double a, double b, std::uint32_t face, double& entry, double& exit,
-                   std::uint32_t& entry_face, std::uint32_t& exit_face) {
-    if (d == 0) return o >= a && o <= b;
-    const bool forward = d > 0;
-    const double in = ((forward ? a : b) - o) / d, out = ((forward ? b : a) - o) / d;
-    if (in > entry) entry = in, entry_face = face + (forward ? 0 : 1);
-    if (out < exit) exit = out, exit_face = face + (forward ? 1 : 0);
-    return entry <= exit;
+  /// Where the ray meets the planes of the low and the high face.
+  struct Slab {
+    double low, high;
+    double near() const { return std::min(low, high); }
+    double far() const { return std::max(low, high); }
+  };
+  /// For a component of exactly zero, of either sign: all of the ray if the origin is within the closed slab,
+  /// or nothing.
+  static Slab parallel_slab(double origin, double low, double high) {
+    constexpr double kInf = std::numeric_limits<double>::infinity();
+    return origin >= low && origin <= high ? Slab{-kInf, kInf} : Slab{kInf, kInf};
   }
 
   Vec3 lo_, hi_;

@@ -11,6 +11,7 @@
 // Rays through the very edge hit both; the rank of the leaves decides.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "rayshade/geometry/ray.h"
@@ -114,10 +115,17 @@ bool projected_weights(const Vec3 (&p)[3], const Ray& ray, double (&weight)[3]) 
   across(p[1], x1, y1);
   across(p[2], x2, y2);
   double w0 = x1 * y2 - y1 * x2, w1 = x2 * y0 - y2 * x0, w2 = x0 * y1 - y0 * x1;
-  if (w0 == 0) w0 = edge_function_exactly(x1, y1, x2, y2);
-  if (w1 == 0) w1 = edge_function_exactly(x2, y2, x0, y0);
-  if (w2 == 0) w2 = edge_function_exactly(x0, y0, x1, y1);
-  if (!(w0 >= 0 && w1 >= 0 && w2 >= 0) && !(w0 <= 0 && w1 <= 0 && w2 <= 0)) return false;
+  const auto one_sign = [&] {
+    return std::min(std::min(w0, w1), w2) >= 0 || std::max(std::max(w0, w1), w2) <= 0;
+  };
+  // Signs that differ are right; zeros agree with either, until they are looked at closely.
+  if (!one_sign()) return false;
+  if (w0 == 0 || w1 == 0 || w2 == 0) {
+    if (w0 == 0) w0 = edge_function_exactly(x1, y1, x2, y2);
+    if (w1 == 0) w1 = edge_function_exactly(x2, y2, x0, y0);
+    if (w2 == 0) w2 = edge_function_exactly(x0, y0, x1, y1);
+    if (!one_sign()) return false;
+  }
   weight[0] = w0, weight[1] = w1, weight[2] = w2;
   return true;
 }
@@ -136,7 +144,7 @@ inline bool Triangle::intersect(const Ray& ray, double lo, double hi, ShapeHit& 
   const double t = dot(n, p_[0] - ray.origin) / slope;
   if (!(t >= lo && t <= hi) || edge_on(slope, dot(n, n), dot(d, d))) return false;
   const double sum = w[0] + w[1] + w[2];
-  if (sum == 0) return false;
+  if (!(std::fabs(sum) > 0)) return false;
   hit.t = t;
   hit.a = w[1] / sum;
   hit.b = w[2] / sum;
