@@ -52,7 +52,7 @@ std::uint64_t Scene::primitive_count(NodeId node) const {
     const Node& n = nodes[top.node];
     const bool instance = n.kind == NodeKind::kInstance;
     const std::size_t members = instance ? 1 : aggregates[n.payload].members.size();
-    if (top.next > 0) top.sum = std::min(kMost, top.sum + result);
+    if (top.next > 0) top.sum = result >= kMost - top.sum ? kMost : top.sum + result;
     if (top.next < members) {
       const std::size_t i = top.next++;
       const NodeId member = instance ? named_objects[n.payload].node : aggregates[n.payload].members[i];

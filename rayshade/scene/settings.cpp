@@ -121,12 +121,10 @@ void resolve_camera(const SceneSettings& scene, const SettingsOverrides& options
   require_finite(out.eye_separation, "eye separation");
   if (out.stereo == Eye::kCenter) return;
   if (!separation) throw SettingsError("a left or right eye needs an eye separation (eyesep or -E)");
+  // The shift is perpendicular to up, so the shifted view cannot be parallel to it.
   const Vec3 right = normalize(cross(normalize(out.look - out.eye), normalize(out.up)));
   const Vec3 shift = (out.stereo == Eye::kLeft ? -0.5 : 0.5) * out.eye_separation * right;
   require_finite(out.eye + shift, "shifted eye point");
-  if (!has_basis(out.eye + shift, out.look, out.up)) {
-    throw SettingsError("the view direction of this eye is parallel to the up vector");
-  }
 }
 
 void resolve_sampling(const SceneSettings& scene, const SettingsOverrides& options, RenderSettings& out) {
