@@ -101,9 +101,9 @@ std::uint8_t ColorEncoder::table_byte(double linear) const {
     return to_byte(value(linear));
   }
   const int bucket = static_cast<int>(linear * kBuckets);
-  const auto from = certain_from_.begin() + first_[bucket] + 1;
-  const auto to = certain_from_.begin() + first_[bucket + 1] + 1;
-  const int code = static_cast<int>(std::upper_bound(from, to, linear) - certain_from_.begin()) - 1;
+  // A bucket holds one threshold or none, but for the darkest ones.
+  std::size_t code = first_[bucket];
+  while (linear >= certain_from_[code + 1]) ++code;
   if (linear <= certain_to_[code]) return static_cast<std::uint8_t>(code);
   return to_byte(value(linear));
 }

@@ -65,7 +65,7 @@ class ColorEncoder {
   bool tabled_ = false;
   // A value from certain_from_[k] to certain_to_[k] has code k; the narrow gaps between are left to the
   // formula.
-  static constexpr int kBuckets = 1024;
+  static constexpr int kBuckets = 4096;
   std::array<double, 257> certain_from_{}, certain_to_{};
   std::array<std::uint8_t, kBuckets + 1> first_{};  // the code at the lower end of each bucket of values
 };

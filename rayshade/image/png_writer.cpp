@@ -2,7 +2,6 @@
 // PNG by libpng. libpng reports errors by longjmp, so no function below that calls it has an object with a
 // destructor between its setjmp and the calls; exceptions of the sink are carried across as exception_ptr.
 #include <png.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
@@ -82,7 +81,6 @@ class PngFile {
     }
     png_set_text(png_, info_, text, text_count);
     png_set_compression_level(png_, kLevel);
-    png_set_compression_strategy(png_, kStrategy);
     png_set_compression_buffer_size(png_, std::size_t{1} << 16);
     // libpng reserves what filters need when the first row comes, from what is allowed by then.
     png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
@@ -105,8 +103,9 @@ class PngFile {
     throw WriteError(std::string("PNG: ") + target_.message);
   }
 
-  static constexpr int kLevel = 3;
-  static constexpr int kStrategy = Z_FILTERED;
+  // Measured on rendered pictures: level 6 takes three times as long as 1 and saves a tenth or so of the
+  // bytes.
+  static constexpr int kLevel = 1;
 
   Target target_;
   png_structp png_ = nullptr;
