@@ -70,32 +70,24 @@ HeightField::HeightField(std::shared_ptr<const HeightFieldData> data) : data_(st
     throw std::invalid_argument("a height field's altitudes do not fill its square");
   }
   cells_ = static_cast<std::uint32_t>(size) - 1;
-  const auto merge = [](Range& a, const Range& b) {
-    a.lo = std::min(a.lo, b.lo);
-    a.hi = std::max(a.hi, b.hi);
-  };
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  constexpr Range kNothing{kInf, -kInf};
   std::uint32_t below = cells_;
   do {
-    const std::uint32_t width = (below + 1) / 2;
-    Level level{width, {}};
-    level.ranges.reserve(static_cast<std::size_t>(width) * width);
-    for (std::uint32_t j = 0; j < width; ++j) {
-      for (std::uint32_t i = 0; i < width; ++i) {
-        constexpr float kInf = std::numeric_limits<float>::infinity();
-        Range range{kInf, -kInf};
-        for (std::uint32_t y = 2 * j; y < std::min(below, 2 * j + 2); ++y) {
-          for (std::uint32_t x = 2 * i; x < std::min(below, 2 * i + 2); ++x) {
-            merge(range, levels_.empty() ? cell_range(x, y)
-                                         : levels_.back().ranges[static_cast<std::size_t>(y) * below + x]);
-          }
-        }
-        level.ranges.push_back(range);
+    const std::uint32_t width = (below + 1) / 2, pairs = (width + 1) / 2;
+    Level level{pairs, {}};
+    level.ranges.assign(std::size_t{pairs} * pairs, {kNothing, kNothing, kNothing, kNothing});
+    for (std::uint32_t j = 0; j < below; ++j) {
+      for (std::uint32_t i = 0; i < below; ++i) {
+        const Range part = levels_.empty() ? cell_range(i, j) : levels_.back().at(i, j);
+        Range& whole = level.at(i / 2, j / 2);
+        whole = {std::min(whole.lo, part.lo), std::max(whole.hi, part.hi)};
       }
     }
     levels_.push_back(std::move(level));
     below = width;
   } while (below > 1);
-  const Range all = levels_.back().ranges[0];
+  const Range all = levels_.back().at(0, 0);
   bounds_ = {{0, 0, all.lo <= all.hi ? all.lo : 0}, {1, 1, all.lo <= all.hi ? all.hi : 0}};
 }
 
@@ -207,7 +199,12 @@ void HeightField::descend(Walk& walk) const {
       test_cell<Axis>(walk, node.i, node.j, node.near, node.far);
       continue;
     }
-    const std::uint32_t level = node.level - 1, width = level == 0 ? cells_ : levels_[level - 1].width;
+    const std::uint32_t level = node.level - 1;
+    std::array<Range, 4> ranges;
+    if (level > 0) {
+      const Level& below = levels_[level - 1];
+      ranges = below.ranges[std::size_t{node.j} * below.pairs + node.i];
+    }
     // Planes in the order of the ray: entry, middle, exit. The far child's planes are the same numbers in the
     // next node along, and rounding is monotone: a child's stay lies within its parent's.
     const double cells = static_cast<double>(std::uint64_t{1} << level);
@@ -225,12 +222,11 @@ void HeightField::descend(Walk& walk) const {
     const std::uint32_t order[4][2] = {{1, 1}, {x_late, !x_late}, {!x_late, x_late}, {0, 0}};
     for (const auto& [kx, ky] : order) {
       const std::uint32_t i = 2 * node.i + (kx ^ first_x), j = 2 * node.j + (ky ^ first_y);
-      if (i >= width || j >= width) continue;
       const double near = std::max({node.near, stay_x[kx][0], stay_y[ky][0]});
       const double far = std::min({node.far, stay_x[kx][1], stay_y[ky][1]});
       if (!(near <= far) || walk.shift + far < walk.lo || walk.shift + near > walk.best_t) continue;
-      const Range range =
-          level == 0 ? cell_range(i, j) : levels_[level - 1].ranges[std::size_t{j} * width + i];
+      if (level == 0 && (i >= cells_ || j >= cells_)) continue;
+      const Range range = level == 0 ? cell_range(i, j) : ranges[2 * (j % 2) + i % 2];
       const double z0 = o.z + near * d.z, z1 = o.z + far * d.z;
       if (std::max(z0, z1) + walk.margin.z < range.lo || std::min(z0, z1) - walk.margin.z > range.hi)
         continue;

@@ -9,6 +9,7 @@
 // cell, so that the order of the descent cannot change which triangle is nearest.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -42,10 +43,15 @@ class HeightField {
   struct Range {
     float lo, hi;  ///< lo > hi: nothing there
   };
-  /// Ranges of the squares of 2^k x 2^k cells, row by row; k starts at 1.
+  /// Ranges of the squares of 2^k x 2^k cells; k starts at 1. The four squares of the next level's square are
+  /// neighbours in memory; those beyond the edge of the field are empty.
   struct Level {
-    std::uint32_t width;
-    std::vector<Range> ranges;
+    std::uint32_t pairs;  ///< squares of the next level per row
+    std::vector<std::array<Range, 4>> ranges;
+
+    Range& at(std::uint32_t i, std::uint32_t j) {
+      return ranges[std::size_t{j / 2} * pairs + i / 2][2 * (j % 2) + i % 2];
+    }
   };
   /// A triangle's plane in grid coordinates: its altitude at one corner and its slopes per cell.
   struct Facet {
