@@ -3,6 +3,7 @@
 // numbers that expectations ask for.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -47,7 +48,7 @@ inline Picture read_ppm(const std::string& bytes) {
   return picture;
 }
 
-/// The pixels that are not black.
+/// The pixels that have red in them.
 struct Lit {
   int count = 0, left = -1, right = -1, top = -1, bottom = -1;
   std::set<int> levels;  ///< their red values
@@ -58,7 +59,7 @@ inline Lit lit_pixels(const Picture& picture) {
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       const Pixel& p = picture.at(x, y);
-      if (p == Pixel{}) continue;
+      if (p[0] == 0) continue;
       if (lit.count++ == 0) {
         lit.left = lit.right = x;
         lit.top = y;

@@ -4,19 +4,16 @@
 
 #include <algorithm>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 namespace rayshade::checks {
 namespace {
 
-/// Splits the first word off.
+/// Splits the first word off; what is left begins with the next.
 std::string first_word(std::string& text) {
-  std::istringstream in(text);
-  std::string word;
-  in >> word;
-  std::getline(in >> std::ws, text);
-  if (!in && !in.eof()) text.clear();
+  const std::size_t end = std::min(text.find(' '), text.size());
+  const std::string word = text.substr(0, end);
+  text.erase(0, std::min(text.find_first_not_of(' ', end), text.size()));
   return word;
 }
 

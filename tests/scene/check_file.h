@@ -13,8 +13,8 @@
 //     equal NAME                  the picture of the first run of that check
 //     different NAME
 //     swapped NAME R G B R G B    that picture with two colours exchanged
-//     lit N columns A B [rows C D] [within T]   N (or *) pixels are not black, and where they lie
-//     levels A B C ...            the red values of the pixels that are not black are exactly these
+//     lit N columns A B [rows C D] [within T]   N (or *) pixels have red in them, and where they lie
+//     levels A B C ...            the red values above 0 are exactly these
 //     maximum M [within T]        the largest byte of all
 //     range red A B               all red bytes lie there
 //     mean R G B within T         of the bytes
