@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The basis of the camera, computed once per frame.
 #include "rayshade/sampling/camera.h"
 
 #include <limits>

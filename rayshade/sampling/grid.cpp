@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Sample numbers and filter weights, computed once per picture.
 #include "rayshade/sampling/grid.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// MurmurHash3 x64 128, written for any byte order.
 #include "rayshade/scene/hash128.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Files and memory as sources of bytes. POSIX calls, because the reasons of failure are for people.
 #include "rayshade/scene/provider.h"
 
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Questions about a whole scene: places for messages, primitive counts, the light of a scene without one.
 #include "rayshade/scene/scene.h"
 
 #include <algorithm>

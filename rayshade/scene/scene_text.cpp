@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Words, file names, surfaces, settings, lights and transforms as canonical text.
 #include "rayshade/scene/scene_text.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Transform lists: composition at a moment, and bounds over an interval of times by interval arithmetic on
+// the matrices.
 #include "rayshade/scene/transform.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Affine maps, their inverses, and boxes taken through them.
 #include "rayshade/math/affine.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The camera against pictures of the original (language.md 11): which pixels see a sphere.
 #include "rayshade/sampling/camera.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Sample numbers, offsets and weights against the tables and formulas of shading.md 7.
 #include "rayshade/sampling/grid.h"
 
 #include <gtest/gtest.h>

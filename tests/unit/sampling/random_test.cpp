@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Known answers of the generator, and statistics over neighbouring addresses.
 #include "rayshade/sampling/random.h"
 
 #include <gtest/gtest.h>

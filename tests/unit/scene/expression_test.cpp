@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Values, ranges, limits and text of time-varying expressions.
 #include "rayshade/scene/expression.h"
 
 #include <gtest/gtest.h>

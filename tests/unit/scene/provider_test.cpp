@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Files, pipes, devices, standard input, and the reasons given where they cannot be read.
 #include "rayshade/scene/provider.h"
 
 #include <fcntl.h>

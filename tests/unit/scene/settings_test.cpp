@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Defaults, precedence, window arithmetic and refusals of resolve_settings.
 #include "rayshade/scene/settings.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Transform lists at a moment, and motion bounds against many sampled moments.
 #include "rayshade/scene/transform.h"
 
 #include <gtest/gtest.h>
