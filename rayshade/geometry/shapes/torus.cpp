@@ -115,6 +115,7 @@ bool Torus::intersect(const Ray& ray, double lo, double hi, ShapeHit& hit) const
     hit = {t, 0, 0, sheet};
     return true;
   };
+  const bool spindle = tube > swept;
   bool outside = true, outside_inner = true;  // states at the left end of the piece
   double left = a, left_parabola = 0;
   for (bool more = true; more;) {
@@ -125,10 +126,14 @@ bool Torus::intersect(const Ray& ray, double lo, double hi, ShapeHit& hit) const
     if (more) {
       const CanonicalRay::Meridian m = canonical.meridian(right);
       const double outer = canonical.outer_of(m), inner = canonical.inner_of(m);
-      outside_next = outer > 0;
-      outside_inner_next = inner > 0;
-      // Near a stationary point the quartic is a parabola: this tells about where its zeros are.
+      // Near a stationary point the quartic is a parabola: this tells about where its zeros are. Where they
+      // are one number the ray only touches, and nothing changes.
       parabola = -outer * inner / (6 * right * right + 2 * p);
+      const double t = shift + right * scale,
+                   reach = t - (shift + (right - std::sqrt(std::fabs(parabola))) * scale);
+      const bool resolved = std::fabs(reach) > 2 * kUlp * std::fabs(t);
+      outside_next = resolved ? outer > 0 : outside;
+      outside_inner_next = resolved ? inner > 0 || !spindle : outside_inner;
     } else {
       right = b;
     }
@@ -177,7 +182,10 @@ SurfacePoint Torus::surface_point(const Ray& ray, const ShapeHit& hit) const {
     p.z = std::copysign(std::sqrt(std::max(0.0, tube_ * tube_ - swept_ * swept_)), p.z);
   }
   SurfacePoint out;
-  out.normal = out.geometric_normal = normalize(frame_.outward(local_normal(p)));
+  Vec3 normal = local_normal(p);
+  // On the inner sheet the formula may vanish: where h = R, z = 0.
+  if (max_abs(normal) <= 1e-12 * (swept_ + tube_)) normal = p;
+  out.normal = out.geometric_normal = normalize(frame_.outward(normal));
   out.point = center_ + frame_.outward(p);
   // In the frame the point is off the tube by at most 6 roundings of numbers below R + r (three for the
   // centre's circle, three for the way from it); turning it out costs another 6 (the axes are unit and
