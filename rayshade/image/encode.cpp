@@ -14,7 +14,8 @@ namespace {
 // IEC 61966-2-1, with its printed constants.
 double to_srgb(double linear) {
   if (!(linear > 0.0031308)) return 12.92 * linear;
-  return 1.055 * fn::pow(linear, 1 / 2.4) - 0.055;
+  const double stored = 1.055 * fn::pow(linear, 1 / 2.4) - 0.055;
+  return linear >= 1 ? std::max(stored, 1.0) : stored;  // 1.055 - 0.055 is a little less than 1
 }
 
 double from_srgb(double stored) {
