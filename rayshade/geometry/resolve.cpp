@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "rayshade/math/fused.h"
+
 namespace rayshade {
 namespace {
 
@@ -120,6 +122,7 @@ LocalHit resolve_local(const CompiledScene& scene, const Hit& hit, const Ray& wo
     out.ray.direction = normalize(out.ray.direction);
   }
   out.point = surface.point;
+  out.along_ray = fused::add_scaled(out.ray.origin, out.t, out.ray.direction);
   out.normal = surface.normal;
   out.geometric_normal = surface.geometric_normal;
   out.error = surface.error;
@@ -172,6 +175,13 @@ bool has_textures(const CompiledScene& scene, const Hit& hit) {
   return false;
 }
 
+// The error so far, the rounding of this map, and that of its inverse, through which every ray that asks for this
+// surface goes, as seen from outside.
+double carried_error(double error, const AffinePair& map, const Vec3& inner, const Vec3& outer) {
+  return norm(map.forward) * (error + 8 * kUnit * magnitude(map.inverse, outer)) +
+         8 * kUnit * magnitude(map.forward, inner);
+}
+
 WorldHit resolve_world(const CompiledScene& scene, const Hit& hit, const Ray& world_ray,
                        TraceScratch& scratch) {
   const LocalHit local = resolve_local(scene, hit, world_ray, scratch);
@@ -181,10 +191,7 @@ WorldHit resolve_world(const CompiledScene& scene, const Hit& hit, const Ray& wo
     const AffinePair& map = placement_of(scene, leaf, world_ray.time, scratch);
     const Vec3 inner = out.point;
     out.point = map.forward.point(inner);
-    // The error so far, the rounding of this map, and that of its inverse, through which every ray that asks
-    // for this surface goes, as seen from outside.
-    out.error = norm(map.forward) * (out.error + 8 * kUnit * magnitude(map.inverse, out.point)) +
-                8 * kUnit * magnitude(map.forward, inner);
+    out.error = carried_error(out.error, map, inner, out.point);
     out.normal = map.normal(out.normal);
     out.geometric_normal = map.normal(out.geometric_normal);
   };

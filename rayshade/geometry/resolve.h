@@ -11,6 +11,8 @@ struct LocalHit {
   Ray ray;                     ///< in primitive space, direction of unit length
   double t = 0;                ///< distance along `ray` (not the world distance)
   Vec3 point, normal, geometric_normal;
+  Vec3 along_ray;              ///< origin + t direction, in fused arithmetic: what textures see. On a surface in a plane
+                               ///< at which a texture changes, its rounding shows (textures.md D20)
   double error = 0;            ///< primitive space
   bool smooth = false;
   bool entering = true;
@@ -59,6 +61,8 @@ struct WorldHit {
   bool entering = true;
 };
 WorldHit resolve_world(const CompiledScene& scene, const Hit& hit, const Ray& world_ray, TraceScratch& scratch);
+/// The error bound of a point after `map` has taken it from `inner` to `outer`.
+double carried_error(double error, const AffinePair& map, const Vec3& inner, const Vec3& outer);
 
 /// A ray that leaves a hit: its origin is moved off the surface by the error bound of the point, to the side into
 /// which the ray goes, and it starts at `lo`. The one place that knows the tolerance of secondary rays (rule 8):

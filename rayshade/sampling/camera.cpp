@@ -31,12 +31,13 @@ Camera::Camera(const RenderSettings& settings)
     eye_ += (settings.stereo == Eye::kLeft ? -half : half) * right_;
     aim();
   }
-  const double distance = dot(view_, forward_);
+  const double distance = length(view_);
   focal_distance_ = settings.focal_distance.value_or(distance);
   const auto half_tangent = [](double degrees) { return fn::tan(degrees * (fn::kPi / 180) / 2); };
   step_x_ = (2 * distance * half_tangent(settings.horizontal_fov) / settings.width) * right_;
   // Rows count from the top: one row further is down.
   step_y_ = (-2 * distance * half_tangent(settings.vertical_fov) / settings.height) * up_;
+  corner_ = view_ - half_width_ * step_x_ - half_height_ * step_y_;
 }
 
 std::array<double, 2> Camera::project(const Vec3& point) const {

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "rayshade/geometry/ray.h"
+#include "rayshade/math/fused.h"
 #include "rayshade/scene/settings.h"
 
 namespace rayshade {
@@ -50,11 +51,14 @@ class Camera {
   std::array<double, 2> project(const Vec3& point) const;
 
  private:
+  // In fused arithmetic, as the reference pictures were made: where a texture changes at a plane of the scene, the
+  // pattern of rounding shows (textures.md D20).
   Vec3 direction(double u, double v) const {
-    return normalize(view_ + (u - half_width_) * step_x_ + (v - half_height_) * step_y_);
+    return fused::normalize(fused::add_scaled(fused::add_scaled(corner_, u, step_x_), v, step_y_));
   }
 
   Vec3 eye_, view_;  // view_: eye to look point
+  Vec3 corner_;      // eye to the screen point (0, 0)
   Vec3 forward_, right_, up_;
   Vec3 step_x_, step_y_;  // one pixel to the right, one pixel down, at the look point
   double half_width_, half_height_;

@@ -95,6 +95,8 @@ struct RayTree::Walk {
   bool in_medium = false;
   double extinction = 1;
   int steps = 0;
+  bool opaque = false;                   ///< something certainly opaque is in the way
+  bool through_all = false;              ///< asks for all leaves, not just transparent ones
 };
 
 RayTree::RayTree(const ShadingScene& scene) : scene_(scene) {
@@ -302,11 +304,14 @@ void RayTree::answer_shadows(std::span<SampleResult> results) {
   if (scene_.settings->transparent_shadows && scene_.compiled->has_transparent) follow_transparent(results);
 }
 
-/// The ordered walk of shading.md 5.3, for the shadow rays that no opaque leaf stopped.
+/// The ordered walk of shading.md 5.3. Where something certainly opaque is in the way, a shadow ray that meets no
+/// transparent leaf is blocked at once; but an opaque surface that coincides with a transparent one is passed with it
+/// (the walk goes on behind it), so those that meet one walk through all leaves.
 void RayTree::follow_transparent(std::span<SampleResult> results) {
   walks_.clear();
   for (std::uint32_t i = 0; i < shadow_queries_.size(); ++i) {
-    if (!lights_[shadow_owner_[i]].blocked) walks_.push_back({shadow_owner_[i], i, shadow_queries_[i].lo, false, 1, 0});
+    const bool opaque = lights_[shadow_owner_[i]].blocked;
+    walks_.push_back({shadow_owner_[i], i, shadow_queries_[i].lo, false, 1, 0, opaque, false});
   }
   std::vector<NearestQuery> queries;
   std::vector<NearestAnswer> answers;
@@ -315,7 +320,8 @@ void RayTree::follow_transparent(std::span<SampleResult> results) {
     answers.resize(walks_.size());
     for (std::size_t i = 0; i < walks_.size(); ++i) {
       const OcclusionQuery& query = shadow_queries_[walks_[i].query];
-      queries[i] = {query.ray, walks_[i].near, query.hi, kTransparent, RayKind::kShadow, 0, query.light};
+      const Opacity mask = walks_[i].through_all ? kAnyOpacity : kTransparent;
+      queries[i] = {query.ray, walks_[i].near, query.hi, mask, RayKind::kShadow, 0, query.light};
     }
     scene_.intersector->nearest(queries, answers, scratch_);
     std::size_t kept = 0;
@@ -326,8 +332,14 @@ void RayTree::follow_transparent(std::span<SampleResult> results) {
       results[node.root].tests += answers[i].tests;
       results[node.root].bounds_tests += answers[i].bounds_tests;
       if (!answers[i].found) continue;
+      if (walk.opaque && !walk.through_all) {
+        walk.through_all = true;
+        pending.blocked = false;
+        walks_[kept++] = walk;
+        continue;
+      }
       if (walk.steps++ == 0) {
-        ++counts_.shadow_hits;
+        counts_.shadow_hits += !walk.opaque;
         ++counts_.transparent_walks;
       }
       const Hit& hit = answers[i].hit;

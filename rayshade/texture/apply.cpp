@@ -2,9 +2,6 @@
 // The walk outward (textures.md 1.2), and each texture put to work on the record of one hit.
 #include "rayshade/texture/apply.h"
 
-#include <cmath>
-#include <limits>
-
 #include "rayshade/texture/image_texture.h"
 #include "rayshade/texture/noise.h"
 #include "rayshade/texture/procedural.h"
@@ -248,40 +245,32 @@ void extend_frame(Evaluation& e, const AffinePair& map) {
   e.frame.inverse = then(map.inverse, e.frame.inverse);
 }
 
-/// The bound of error of a point after a map: the distance along the normal scales with the planes that it
-/// crosses, and the map itself rounds.
-double carried_error(double error, const Vec3& unit_normal, const Vec3& point, const AffinePair& map) {
-  constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
-  const double shrink = length(map.inverse.transposed_vector(unit_normal));
-  const Affine& m = map.forward;
-  const double magnitude = std::fabs(point.x) * max_abs(m.rows[0]) + std::fabs(point.y) * max_abs(m.rows[1]) +
-                           std::fabs(point.z) * max_abs(m.rows[2]) + max_abs(m.translation);
-  return (shrink > 0 ? error / shrink : error) + kRounding * magnitude;
-}
-
 }  // namespace
 
 void evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, const Hit& hit,
                   const Ray& world_ray, const SampleContext& sample, TraceScratch& scratch,
                   TexturedHit& out) {
   const PathNeeds needs =
-      scene.has_textures ? needs_of(scene, textures, hit, world_ray.time, scratch, false) : PathNeeds{};
+      has_textures(scene, hit) ? needs_of(scene, textures, hit, world_ray.time, scratch, false) : PathNeeds{};
   if (needs.levels == 0) {
     out.world = resolve_world(scene, hit, world_ray, scratch);
     out.surface = surface_of(scene, hit);
     return;
   }
   const LocalHit local = resolve_local(scene, hit, world_ray, scratch);
-  Evaluation e{scene,        hit, local, sample, {world_ray.time, scene.frame}, local.point,
+  Evaluation e{scene,        hit, local, sample, {world_ray.time, scene.frame}, local.along_ray,
                local.normal, {},  false, 0,      surface_of(scene, hit)};
   Vec3 geometric = local.geometric_normal;
+  Vec3 exact = local.point;
   double error = local.error;
   PathWalk walk(scene, hit, world_ray.time, scratch);
   PathLevel level;
   while (walk.next(level)) {
     if (level.map) {
-      error = carried_error(error, geometric, e.point, *level.map);
       e.point = level.map->forward.point(e.point);
+      const Vec3 inner = exact;
+      exact = level.map->forward.point(inner);
+      error = carried_error(error, *level.map, inner, exact);
       e.normal = level.map->normal(e.normal);
       geometric = level.map->normal(geometric);
       if (needs.frame) extend_frame(e, *level.map);
@@ -290,7 +279,7 @@ void evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, 
     for (const CompiledTexture& texture : textures.list(level.texture_list).textures)
       apply_texture(texture, e);
   }
-  out.world = {e.point, e.normal, geometric, error, local.smooth, local.entering};
+  out.world = {exact, e.normal, geometric, error, local.smooth, local.entering};
   out.surface = e.surface;
 }
 
@@ -298,14 +287,14 @@ Transmittance evaluate_transmittance(const CompiledScene& scene, const CompiledT
                                      const Hit& hit, const Ray& world_ray, TraceScratch& scratch) {
   const LocalHit local = resolve_local(scene, hit, world_ray, scratch);
   const PathNeeds needs =
-      scene.has_textures ? needs_of(scene, textures, hit, world_ray.time, scratch, true) : PathNeeds{};
+      has_textures(scene, hit) ? needs_of(scene, textures, hit, world_ray.time, scratch, true) : PathNeeds{};
   const auto result = [&local](const Surface& s) {
     return Transmittance{s.body * s.transparency, s.extinction, local.entering};
   };
   if (needs.levels == 0) return result(surface_of(scene, hit));
   // Nothing that changes transmission reads the shading normal, so it is not carried outward.
   const SampleContext sample;
-  Evaluation e{scene,        hit, local, sample, {world_ray.time, scene.frame}, local.point,
+  Evaluation e{scene,        hit, local, sample, {world_ray.time, scene.frame}, local.along_ray,
                local.normal, {},  false, 0,      surface_of(scene, hit)};
   PathWalk walk(scene, hit, world_ray.time, scratch);
   PathLevel level;
