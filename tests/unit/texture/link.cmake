@@ -1,0 +1,2 @@
+# Whole textures are tested from scene text.
+target_link_libraries(texture_test PRIVATE rayshade_lang)
