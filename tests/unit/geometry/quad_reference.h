@@ -37,13 +37,15 @@ inline Quad length(const QuadVec& a) { return root(dot(a, a)); }
 inline QuadVec at(const Ray& ray, Quad t) { return wide(ray.origin) + t * wide(ray.direction); }
 
 using Function = std::function<Quad(Quad)>;
+using Slope = std::function<double(double, double)>;
 
-/// Where `f` changes sign in [a, b], ascending, 72 bits of `width`. |f(x) - f(y)| <= slope |x - y| must hold
-/// (f need not be smooth). Two changes closer than `width` may be missed: the caller says which width it does
-/// not care for.
-inline void sign_changes(const Function& f, Quad a, Quad b, Quad slope, Quad width, std::vector<Quad>& out) {
+/// Where `f` changes sign in [a, b], ascending, to 72 bits of `width`. |f(x) - f(y)| <= slope(u, v) |x - y|
+/// must hold for x, y in [u, v] (f need not be smooth). Two changes closer than `width` may be missed: the
+/// caller says which width it does not care for.
+inline void sign_changes(const Function& f, Quad a, Quad b, const Slope& slope, Quad width,
+                         std::vector<Quad>& out) {
   const Quad middle = (a + b) / 2;
-  if (absolute(f(middle)) > slope * (b - a) / 2) return;
+  if (absolute(f(middle)) > slope(static_cast<double>(a), static_cast<double>(b)) * (b - a) / 2) return;
   if (b - a > width) {
     sign_changes(f, a, middle, slope, width, out);
     sign_changes(f, middle, b, slope, width, out);

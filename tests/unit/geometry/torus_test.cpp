@@ -61,7 +61,8 @@ struct Reference {
     for (std::uint32_t sheet = 0; sheet < (r > R ? 2U : 1U); ++sheet) {
       std::vector<Quad> found;
       reference::sign_changes([&](Quad t) { return distance(reference::at(ray, t), sheet); }, middle - reach,
-                              middle + reach, speed, 1e-6 * r / speed, found);
+                              middle + reach, [&](double, double) { return static_cast<double>(speed); },
+                              1e-6 * r / speed, found);
       for (const Quad t : found) out.push_back({static_cast<double>(t), sheet});
     }
     std::sort(out.begin(), out.end(), [](const Root& a, const Root& b) { return a.t < b.t; });
