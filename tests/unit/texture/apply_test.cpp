@@ -212,6 +212,76 @@ TEST(Apply, UvMappingMovesThePointByTheTexturesTransformAfterTheObjectsInverse) 
   EXPECT_GT(distinct, 0);  // the other order would show elsewhere
 }
 
+/// Two levels of transforms, and a texture with one of its own.
+const std::string kTwoLevels = " rotate 0 0 1 30 scale 2 3 1 end translate .4 .7 .3 rotate 1 2 3 20\n";
+const Affine kInner = then(rotation_degrees({0, 0, 1}, 30), scaling({2, 3, 1}));
+const Affine kOuter = then(translation({0.4, 0.7, 0.3}), rotation_degrees({1, 2, 3}, 20));
+
+TEST(Apply, TheFrameIsComposedOverLevels) {
+  TexturedScene scene(
+      "list poly ambient 1 1 1 -5 -5 0 5 -5 0 5 5 0 -5 5 0" + kTwoLevels + "texture image ramp.ppm",
+      {{"ramp.ppm", "P3\n4 1\n255\n10 0 0 20 0 0 30 0 0 40 0 0\n"}});
+  const Affine frame = then(kInner, kOuter);
+  for (double x = -1; x < 1; x += 0.17) {
+    const Vec3 local{x, 0.35, 0};
+    const Vec3 p = frame.point(local);
+    const double column = std::floor((x - std::floor(x)) * 4);
+    EXPECT_NEAR(scene.look(p + Vec3{0, 0, 5}, p).surface.ambient.r * 255, 10 * (column + 1), 1e-9) << x;
+  }
+}
+
+TEST(Apply, TangentsGoOutwardAndThroughTheTexturesTransform) {
+  TexturedScene scene("list poly -5 -5 0 5 -5 0 5 5 0 -5 5 0" + kTwoLevels +
+                          "texture image grey.pgm component bump range .9 .1 scale .7 .9 1.3 rotate 1 0 0 25",
+                      {{"grey.pgm", "P2\n2 2\n255\n10 250 130 60\n"}});
+  const Affine frame = then(kInner, kOuter);
+  const Affine t = then(scaling({0.7, 0.9, 1.3}), rotation_degrees({1, 0, 0}, 25));
+  const Vec3 n =
+      normalize(inverse(kOuter)->transposed_vector(normalize(inverse(kInner)->transposed_vector({0, 0, 1}))));
+  const Vec3 du = frame.vector({1, 0, 0}), dv = frame.vector({0, 1, 0}), g = frame.vector({0, 0, 1});
+  const auto tangent = [&](const Vec3& row) { return normalize(row.x * du + row.y * dv + row.z * g); };
+  const double height[2][2] = {{130 / 255.0, 60 / 255.0}, {10 / 255.0, 250 / 255.0}};  // the lower row first
+  for (double x = -1; x < 1; x += 0.13) {
+    const Vec3 p = frame.point({x, 0.35, 0});
+    // D4 again: T after the inverse of the frame, on the point already taken by the inverse of T.
+    const Vec3 at = t.point(inverse(frame)->point(inverse(t)->point(p)));
+    const Vec3 uv = inverse(t)->point({at.x, at.y, 0});
+    const int ix = static_cast<int>((uv.x - std::floor(uv.x)) * 2),
+              iy = static_cast<int>((uv.y - std::floor(uv.y)) * 2);
+    const double here = height[iy][ix];
+    const double fu = 0.1 + 0.8 * (height[iy][1 - ix] - here), fv = 0.1 + 0.8 * (height[1 - iy][ix] - here);
+    const Vec3 expected =
+        normalize(n + fu * cross(n, tangent(t.rows[1])) - fv * cross(n, tangent(t.rows[0])));
+    expect_near(scene.look(p + 3 * n, p).world.normal, expected, 1e-9);
+  }
+}
+
+TEST(Apply, MountTintsTheHighlightToo) {
+  TexturedScene scene(
+      "plane ambient 1 1 1 diffuse 1 1 1 specular 1 1 1 body 1 1 1 0 0 -1 0 0 1 texture mount m.map 0 0",
+      {{"m.map", "51 102 153\n"}});
+  const Surface s = scene.look({0.1, 0.2, 5}, {0.1, 0.2, 0}).surface;
+  EXPECT_NEAR(s.ambient.r, 0.2, 1e-15);
+  EXPECT_NEAR(s.diffuse.g, 0.4, 1e-15);
+  EXPECT_NEAR(s.specular.b, 0.6, 1e-15);
+  EXPECT_EQ(s.body, (Color{1, 1, 1}));
+}
+
+/// A 2 x 1 grey picture with alpha as Utah RLE: values 0 and 255, both with that alpha.
+std::string grey_with_alpha(int alpha) {
+  const char a = static_cast<char>(alpha);
+  return std::string("\x52\xCC\0\0\0\0\2\0\1\0\6\1\x8\0\0\0", 16) + std::string{2, '\xff', 5, 1, a, a} +
+         std::string{2, 0, 5, 1, 0, '\xff', 7, 0};
+}
+
+TEST(Apply, AnInvisiblePixelDoesNotBump) {
+  const std::string text = "plane 0 0 .3 0 0 1 texture image g.rle component bump map planar";
+  TexturedScene visible(text, {{"g.rle", grey_with_alpha(255)}}),
+      invisible(text, {{"g.rle", grey_with_alpha(0)}});
+  expect_near(visible.look({0.2, 0.2, 5}, {0.2, 0.2, 0}).world.normal, normalize({-1, 0, 1}));
+  expect_near(invisible.look({0.2, 0.2, 5}, {0.2, 0.2, 0}).world.normal, {0, 0, 1});
+}
+
 TEST(Apply, AllTexturesTakeHugeAndTinyPoints) {
   const std::map<std::string, std::string> files = {{"m.map", "1 2 3\n"},
                                                     {"i.ppm", "P3\n1 1\n255\n10 20 30\n"}};
