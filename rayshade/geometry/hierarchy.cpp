@@ -13,10 +13,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kBins = 16;
 /// Below this depth ranges are halved whatever the boxes look like, so that the depth is bounded.
 constexpr int kDeepest = 48;
-/// A run of this few leaves is not split where testing them all costs no more.
-constexpr std::uint32_t kSmallRun = 4;
-/// Cost of a node relative to one exact test.
-constexpr float kNodeCost = 1.2f;
+/// Runs of this few become leaves, except to fill lanes that would be empty.
+constexpr std::uint32_t kSmallRun = 3;
 /// Components of a direction below this share of the largest are taken for it: over the extent of a group the
 /// difference is far below the slack.
 constexpr double kLeastComponent = 1e-18;
@@ -114,7 +112,6 @@ struct Hierarchy::Builder {
   struct Range {
     std::uint32_t first, last;
     BoxF box;
-    bool done = false;  ///< a leaf
     std::uint32_t size() const { return last - first; }
   };
 
@@ -124,8 +121,7 @@ struct Hierarchy::Builder {
     return r;
   }
 
-  /// False where the range is better left whole.
-  bool split(const Range& whole, bool halve, Range& left, Range& right) {
+  void split(const Range& whole, bool halve, Range& left, Range& right) {
     const std::uint32_t n = whole.size();
     const auto begin = out.order_.begin() + whole.first, end = out.order_.begin() + whole.last;
     std::uint32_t middle = n / 2;
@@ -178,9 +174,6 @@ struct Hierarchy::Builder {
           }
         }
       }
-      const float area = whole.box.half_area();
-      if (n <= kSmallRun && (best_axis < 0 || best + kNodeCost * area >= static_cast<float>(n) * area))
-        return false;
       if (best_axis >= 0) {
         const float factor = factor_of(best_axis);
         const auto at = std::stable_partition(
@@ -190,7 +183,6 @@ struct Hierarchy::Builder {
     }
     left = range(whole.first, whole.first + middle);
     right = range(whole.first + middle, whole.last);
-    return true;
   }
 
   /// Builds a node over a range of at least two.
@@ -202,17 +194,14 @@ struct Hierarchy::Builder {
     while (count < kWidth) {
       int widest = -1;
       for (int i = 0; i < count; ++i) {
-        if (parts[i].done || parts[i].size() < 2) continue;
+        if (parts[i].size() < 2) continue;
         if (widest < 0 || parts[i].box.half_area() > parts[widest].box.half_area()) widest = i;
       }
       if (widest < 0) break;
       Range left, right;
-      if (split(parts[widest], depth > kDeepest, left, right)) {
-        parts[widest] = left;
-        parts[count++] = right;
-      } else {
-        parts[widest].done = true;
-      }
+      split(parts[widest], depth > kDeepest, left, right);
+      parts[widest] = left;
+      parts[count++] = right;
     }
     Node node{};
     for (int lane = 0; lane < kWidth; ++lane) {
@@ -226,7 +215,7 @@ struct Hierarchy::Builder {
       for (std::uint32_t i = part.first; i < part.last; ++i) {
         node.opacity[lane] = static_cast<std::uint8_t>(node.opacity[lane] | opacities[out.order_[i]]);
       }
-      if (part.done || part.size() == 1) {
+      if (part.size() <= kSmallRun) {
         node.child[lane] = kLeafBit | (part.size() - 1) << kCountShift | part.first;
       } else {
         node.child[lane] = build(part, depth + 1);
