@@ -183,9 +183,12 @@ SurfacePoint Torus::surface_point(const Ray& ray, const ShapeHit& hit) const {
   }
   SurfacePoint out;
   Vec3 normal = local_normal(p);
-  // On the inner sheet the formula may vanish: where h = R, z = 0.
-  if (max_abs(normal) <= 1e-12 * (swept_ + tube_)) normal = p;
-  out.normal = out.geometric_normal = normalize(frame_.outward(normal));
+  // The formula vanishes on the inner sheet where h = R, z = 0, and at the pinch of a horn (r = R), which has
+  // no normal.
+  const double nothing = 1e-12 * (swept_ + tube_);
+  if (max_abs(normal) <= nothing) normal = p;
+  out.normal = out.geometric_normal =
+      normalize(max_abs(normal) <= nothing ? -ray.direction : frame_.outward(normal));
   out.point = center_ + frame_.outward(p);
   // In the frame the point is off the tube by at most 6 roundings of numbers below R + r (three for the
   // centre's circle, three for the way from it); turning it out costs another 6 (the axes are unit and

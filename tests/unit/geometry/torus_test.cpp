@@ -155,7 +155,9 @@ class Checker {
     const double cosine =
         std::fabs(static_cast<double>(dot(reference_.normal(p, root.sheet), wide(ray.direction)))) / speed;
     const double curvature = 1 / shape_.tube + 1 / static_cast<double>(reference_.axis_distance(p));
-    grazing_ = !(cosine * cosine > 64 * 8 * kUlp * size_ * curvature);
+    // Nor does the reference see pairs closer than its width.
+    grazing_ =
+        !(cosine * cosine > 64 * 8 * kUlp * size_ * curvature && cosine > 1e-6 * shape_.tube * curvature);
     return kUlp * size_ / (cosine * speed);
   }
 
