@@ -12,9 +12,6 @@ constexpr double kUlp = std::numeric_limits<double>::epsilon();
 /// Widening of cells and altitude ranges during the descent, relative to the numbers at hand: thousands of
 /// roundings, so that no triangle that the exact test would accept is passed over.
 constexpr double kMargin = 1e-12;
-/// Triangles seen from above at a smaller angle (its sine) are not seen (objects.md 5.4).
-constexpr double kEdgeOn = kEpsilon;
-
 bool is_set(float altitude) { return HeightFieldData::is_set(altitude) && std::isfinite(altitude); }
 
 struct Point2 {
@@ -54,7 +51,6 @@ struct HeightField::Walk {
   Vec3 inverse;             ///< of the direction, finite
   Vec3 margin;              ///< absolute widening per axis
   double shear_1, shear_2;  ///< of the two minor axes by the major one
-  double length_square;     ///< of the direction in primitive space
   double near, far;         ///< the ray's stay in the box
   double best_t;
   double best_x = 0;
@@ -122,7 +118,6 @@ bool HeightField::intersect(const Ray& ray, double lo, double hi, ShapeHit& hit)
   Walk walk;
   walk.origin = {ray.origin.x * m, ray.origin.y * m, ray.origin.z};
   walk.direction = {ray.direction.x * m, ray.direction.y * m, ray.direction.z};
-  walk.length_square = length_squared(ray.direction);
   walk.lo = lo;
   walk.hi = walk.best_t = hi;
   const Vec3& d = walk.direction;
@@ -248,7 +243,6 @@ void HeightField::test_cell(Walk& walk, std::uint32_t i, std::uint32_t j, double
   };
   const Point2 p10 = project(x1, y0, z10), p01 = project(x0, y1, z01);
   const int diagonal = side(p10, p01);
-  const double m = cells_;
 
   struct Found {
     bool hit = false;
@@ -256,15 +250,11 @@ void HeightField::test_cell(Walk& walk, std::uint32_t i, std::uint32_t j, double
   };
   const auto meet = [&](double x, double y, double z, double slope_x, double slope_y) {
     const double fall = d.z - slope_x * d.x - slope_y * d.y;
+    // Clamped to the stay in the cell: what is not beyond it in the descent is not beyond it here. There is
+    // no threshold for triangles that are almost edge-on: with the original's, rays would slip through them
+    // where a neighbour across the edge is not. Those exactly edge-on were sorted out by their projection.
     Found out;
-    if (fall < 0) {
-      const double steepness_square = 1 + m * m * (slope_x * slope_x + slope_y * slope_y);
-      if (!(fall * fall >= kEdgeOn * kEdgeOn * walk.length_square * steepness_square)) return out;
-    } else if (!(fall > 0)) {
-      return out;
-    }
-    // Clamped to the stay in the cell: what is not beyond it in the descent is not beyond it here.
-    out.x = std::clamp(((z - o.z) - slope_x * x - slope_y * y) / fall, near, far);
+    out.x = fall != 0 ? std::clamp(((z - o.z) - slope_x * x - slope_y * y) / fall, near, far) : near;
     out.t = walk.shift + out.x;
     out.hit = out.t >= walk.lo && out.t > 0;
     return out;

@@ -50,7 +50,7 @@ QuadVec cross(const QuadVec& a, const QuadVec& b) {
 struct Candidate {
   double t;
   double unit;   ///< what one rounding of the numbers at hand does to t
-  bool certain;  ///< not within rounding of an edge of the triangle or of the edge-on rule
+  bool certain;  ///< not within rounding of an edge of the triangle
   std::uint32_t part;
 };
 
@@ -81,10 +81,6 @@ std::vector<Candidate> all_triangles(const HeightFieldData& data, const Ray& ray
         const Quad area = length(normal);
         const Quad sine = dot(normal, d) / (area * speed);
         const Quad height = dot(normal, o - a);
-        // From above at an angle of more than 1e-5, from below at any.
-        if (sine == 0 || (sine > 0) == (height > 0)) continue;
-        const bool almost = sine < 0 && reference::absolute(-sine - 1e-5) < 1e-12;
-        if (sine < 0 && -sine < 1e-5 && !almost) continue;
         const Quad t = -height / dot(normal, d);
         const QuadVec p = reference::at(ray, t);
         // Distances from the edges.
@@ -99,7 +95,7 @@ std::vector<Candidate> all_triangles(const HeightFieldData& data, const Ray& ray
         const double slack = 16 * kUlp * size / std::fabs(static_cast<double>(sine));
         if (inside < -slack) continue;
         out.push_back({static_cast<double>(t), kUlp * size / std::fabs(static_cast<double>(sine) * speed),
-                       inside > slack && !almost, static_cast<std::uint32_t>(2 * (j * (n - 1) + i) + upper)});
+                       inside > slack, static_cast<std::uint32_t>(2 * (j * (n - 1) + i) + upper)});
       }
     }
   }
@@ -403,15 +399,17 @@ TEST(HeightField, LargeFlatFieldsAreSeenFromAboveAndBelow) {
   }
 }
 
-TEST(HeightField, EdgeOnIsAnAngleWhateverTheLengths) {
-  // From above not below a sine of 1e-5, from below at any angle.
+TEST(HeightField, GrazingRaysHitWhateverTheLengths) {
   for (const double speed : {1e-6, 1.0, 1e6}) {
     const HeightField field(make_data(9, [](double, double) { return 0; }));
-    ShapeHit hit;
-    EXPECT_TRUE(field.intersect({{0.1, 0.4, 1e-6}, Vec3{1, 0, -1.01e-5} * speed}, 0, kInf, hit));
-    EXPECT_FALSE(field.intersect({{0.1, 0.4, 1e-6}, Vec3{1, 0, -0.99e-5} * speed}, 0, kInf, hit));
-    EXPECT_TRUE(field.intersect({{0.1, 0.4, -1e-9}, Vec3{1, 0, 1e-8} * speed}, 0, kInf, hit));
-    EXPECT_NEAR(hit.t * speed, 0.1, 1e-12);
+    for (const double side : {1.0, -1.0}) {
+      ShapeHit hit;
+      EXPECT_TRUE(field.intersect({{0.1, 0.4, 1e-9 * side}, Vec3{1, 0, -1e-8 * side} * speed}, 0, kInf, hit));
+      EXPECT_NEAR(hit.t * speed, 0.1, 1e-12);
+      EXPECT_FALSE(field.intersect({{0.1, 0.4, 1e-9 * side}, Vec3{1, 0, 0} * speed}, 0, kInf, hit));
+      EXPECT_FALSE(field.intersect({{-0.1, 0.4, 0}, Vec3{1, 0, 0} * speed}, 0, kInf, hit))
+          << "within its plane";
+    }
   }
 }
 
