@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Flattening: what is inlined and what is shared, surfaces and opacity through instances, deep and exponential
-// structures, memory, motion.
+// Flattening: what is inlined and what is shared, surfaces and opacity through instances, deep and
+// exponential structures, memory, motion.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,8 @@ NearestAnswer trace(const CompiledScene& scene, const Ray& ray, double lo = kEps
 
 TEST(Compile, ListsAndObjectsUsedOnceVanish) {
   SceneBuilder b;
-  const auto once = b.name(b.moved(b.list({b.sphere(1, {0, 0, 0}), b.sphere(1, {3, 0, 0})}), translation({0, 0, 1})));
+  const auto once =
+      b.name(b.moved(b.list({b.sphere(1, {0, 0, 0}), b.sphere(1, {3, 0, 0})}), translation({0, 0, 1})));
   b.show(b.moved(b.grid({b.moved(b.object(once), scaling({2, 2, 2}))}), translation({5, 0, 0})));
   b.name(b.height_field("never read"));
   const auto scene = b.compile();
@@ -70,10 +71,11 @@ TEST(Compile, SharedAndWrittenOutAreTheSame) {
   const auto make = [](SceneBuilder& b, int copies) {
     std::vector<std::uint32_t> names;
     for (int copy = 0; copy < copies; ++copy) {
-      names.push_back(b.name(b.moved(
-          b.list({b.sphere(1, {0, 0, 0}), b.torus(1.5, 0.25, {0, 0, 0}, {0, 0, 1}), b.disc(2, {0, 0, -1}, {0, 0, 1}),
-                  b.difference({b.box({-1, -1, 0}, {0, 0, 1.25}), b.sphere(0.5, {-0.5, -0.5, 1})})}),
-          scaling({1, 1.5, 0.75}))));
+      names.push_back(b.name(
+          b.moved(b.list({b.sphere(1, {0, 0, 0}), b.torus(1.5, 0.25, {0, 0, 0}, {0, 0, 1}),
+                          b.disc(2, {0, 0, -1}, {0, 0, 1}),
+                          b.difference({b.box({-1, -1, 0}, {0, 0, 1.25}), b.sphere(0.5, {-0.5, -0.5, 1})})}),
+                  scaling({1, 1.5, 0.75}))));
     }
     for (int i = 0; i < 6; ++i) {
       b.show(b.moved(b.object(names[static_cast<std::size_t>(i % copies)]),
@@ -91,7 +93,8 @@ TEST(Compile, SharedAndWrittenOutAreTheSame) {
   int hits = 0;
   for (int i = 0; i < 3000; ++i) {
     const Vec3 origin = 30 * dice.direction();
-    const Ray ray{origin, normalize(Vec3{dice.uniform(-2, 18), dice.uniform(-2, 2), dice.uniform(-2, 2)} - origin)};
+    const Ray ray{origin,
+                  normalize(Vec3{dice.uniform(-2, 18), dice.uniform(-2, 2), dice.uniform(-2, 2)} - origin)};
     const NearestAnswer x = trace(*a, ray), y = trace(*b, ray);
     ASSERT_EQ(x.found, y.found);
     if (!x.found) continue;
@@ -132,7 +135,8 @@ TEST(Compile, SurfacesComeFromTheInnermostNode) {
 TEST(Compile, OpacityFollowsTheSurfaceAroundAnInstance) {
   SceneBuilder b;
   const auto pair = b.name(b.list({b.sphere(1, {0, 0, 0}), b.sphere(1, {5, 0, 0})}));
-  const auto fixed = b.name(b.list({b.transparent(b.sphere(1, {0, 9, 0}), 0), b.transparent(b.sphere(1, {5, 9, 0}))}));
+  const auto fixed =
+      b.name(b.list({b.transparent(b.sphere(1, {0, 9, 0}), 0), b.transparent(b.sphere(1, {5, 9, 0}))}));
   b.show(b.transparent(b.object(pair)));
   b.show(b.moved(b.object(pair), translation({20, 0, 0})));
   b.show(b.transparent(b.object(fixed)));
@@ -142,7 +146,8 @@ TEST(Compile, OpacityFollowsTheSurfaceAroundAnInstance) {
   EXPECT_EQ(scene->counts.shared_groups, 3u) << "two variants of the one, one of the other";
   const auto blocks = [&](double x, double y, Opacity mask) {
     TraceScratch scratch;
-    const bool brute = test::occluded(*make_brute_force(*scene), {{x, y, 9}, {0, 0, -1}}, scratch, 0, 50, mask);
+    const bool brute =
+        test::occluded(*make_brute_force(*scene), {{x, y, 9}, {0, 0, -1}}, scratch, 0, 50, mask);
     EXPECT_EQ(test::occluded(*make_hierarchy(*scene), {{x, y, 9}, {0, 0, -1}}, scratch, 0, 50, mask), brute);
     return brute;
   };
@@ -271,8 +276,9 @@ TEST(Compile, DoublingTakesNoTimeAndMemory) {
     NodeId node = b->list({b->sphere(0.25, {0, 0, 0}), b->sphere(0.25, {0, 0, 1})});
     for (int level = 0; level < levels; ++level) {
       const auto name = b->name(node);
-      node = b->list({b->object(name), b->at(b->moved(b->object(name), translation({std::ldexp(1, level), 0, 0})),
-                                             static_cast<std::uint32_t>(level + 1))});
+      node = b->list(
+          {b->object(name), b->at(b->moved(b->object(name), translation({std::ldexp(1, level), 0, 0})),
+                                  static_cast<std::uint32_t>(level + 1))});
     }
     b->show(node);
     return b;
@@ -283,12 +289,12 @@ TEST(Compile, DoublingTakesNoTimeAndMemory) {
   EXPECT_EQ(scene->groups[0].order_span, std::uint64_t{1} << 32);
   EXPECT_LT(scene->counts.bytes, 100'000u);
   TraceScratch scratch;
-  const NearestAnswer answer =
-      test::nearest(*make_hierarchy(*scene), {{1234567, 0, 9}, {0, 0, -1}}, scratch);
+  const NearestAnswer answer = test::nearest(*make_hierarchy(*scene), {{1234567, 0, 9}, {0, 0, -1}}, scratch);
   ASSERT_TRUE(answer.found);
   EXPECT_EQ(answer.hit.t(), 9 - 1.25);
   EXPECT_EQ(answer.hit.instances.count, 31u);
-  EXPECT_EQ(resolve_world(*scene, answer.hit, {{1234567, 0, 9}, {0, 0, -1}}, scratch).point, (Vec3{1234567, 0, 1.25}));
+  EXPECT_EQ(resolve_world(*scene, answer.hit, {{1234567, 0, 9}, {0, 0, -1}}, scratch).point,
+            (Vec3{1234567, 0, 1.25}));
 
   try {
     doubled(40)->compile();
@@ -393,7 +399,8 @@ TEST(Compile, MotionBoundsHoldThePath) {
   for (int i = 0; i <= 100; ++i) {
     const double time = 0.25 + 0.005 * i;
     const Affine& map = scratch.motion.placement(*scene, scene->leaves[0].placement, time).forward;
-    for (const Vec3& p : {Vec3{2.5, 0, 0}, Vec3{1.5, 0, 0}, Vec3{2, 0.5, 0}, Vec3{2, -0.5, 0}, Vec3{2, 0, 0.5}}) {
+    for (const Vec3& p :
+         {Vec3{2.5, 0, 0}, Vec3{1.5, 0, 0}, Vec3{2, 0.5, 0}, Vec3{2, -0.5, 0}, Vec3{2, 0, 0.5}}) {
       EXPECT_TRUE(box.contains(map.point(p)));
     }
   }
@@ -433,7 +440,8 @@ TEST(Compile, MotionThatDegeneratesIsReportedWithItsTime) {
   SceneBuilder b;
   AnimatedStep step;
   step.kind = StepKind::kScale;
-  step.arguments = {Expression(1), Expression::apply(Operation::kSubtract, {Expression(1), Expression::time(), {}, {}}),
+  step.arguments = {Expression(1),
+                    Expression::apply(Operation::kSubtract, {Expression(1), Expression::time(), {}, {}}),
                     Expression(1)};
   b.show(b.moved(b.sphere(1, {0, 0, 0}), step));
   const auto scene = b.compile();

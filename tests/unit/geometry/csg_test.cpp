@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Constructive solid geometry: equal to Boolean algebra where that is defined (objects.md 7.8), the original's answers
-// where it is not (7.9 to 7.12), and the media that rays pass (13).
+// Constructive solid geometry: equal to Boolean algebra where that is defined (objects.md 7.8), the
+// original's answers where it is not (7.9 to 7.12), and the media that rays pass (13).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -102,7 +102,8 @@ struct Solid {
       return {{from, to}};
     }
     Spans out = members[0].along(ray);
-    for (std::size_t i = 1; i < members.size(); ++i) out = rayshade::combine(kind, out, members[i].along(ray));
+    for (std::size_t i = 1; i < members.size(); ++i)
+      out = rayshade::combine(kind, out, members[i].along(ray));
     return out;
   }
 
@@ -115,7 +116,8 @@ struct Solid {
   }
 };
 
-/// Whether two of the faces along the ray are so near each other, or the start, that the tolerance may skip one.
+/// Whether two of the faces along the ray are so near each other, or the start, that the tolerance may skip
+/// one.
 bool delicate(const Solid& solid, const Ray& ray) {
   std::vector<double> ends{0};
   solid.ends(ray, ends);
@@ -169,9 +171,9 @@ TEST(Csg, EqualsBooleanAlgebraOnRandomSolids) {
   EXPECT_GT(from_within, 3'000);
 }
 
-/// Length of a medium's path along -z through the origin, as absorption measures it: a stack of media, pushed when
-/// entering and popped when leaving (shading.md 2.5). Extinction 0.5 is one medium, 1 is none; infinite where the
-/// ray never leaves.
+/// Length of a medium's path along -z through the origin, as absorption measures it: a stack of media, pushed
+/// when entering and popped when leaving (shading.md 2.5). Extinction 0.5 is one medium, 1 is none; infinite
+/// where the ray never leaves.
 double absorbing_path(SceneBuilder& b) {
   const auto scene = b.compile();
   const auto intersector = make_hierarchy(*scene);
@@ -219,9 +221,18 @@ TEST(Csg, MediaAsTheOriginalMeasuresThem) {
   const auto cube = [](SceneBuilder& b) { return b.box({-1, -1, -1}, {1, 1, 1}); };
   const auto ball = [](SceneBuilder& b, double r, double z) { return b.sphere(r, {0, 0, z}); };
   EXPECT_NEAR(path_of([&](SceneBuilder& b) { return ball(b, 1, 0); }), 2, 1e-9);
-  EXPECT_NEAR(path_of([&](SceneBuilder& b) { return b.difference({ball(b, 1, 0), ball(b, 0.5, 0)}); }), 1, 1e-9);
-  EXPECT_NEAR(path_of([&](SceneBuilder& b) { return b.unite({ball(b, 1, 0.5), ball(b, 1, -0.5)}); }), 3, 1e-9);
-  EXPECT_NEAR(path_of([&](SceneBuilder& b) { return b.intersect({ball(b, 1, 0.5), ball(b, 1, -0.5)}); }), 1, 1e-9);
+  EXPECT_NEAR(path_of([&](SceneBuilder& b) {
+                return b.difference({ball(b, 1, 0), ball(b, 0.5, 0)});
+              }),
+              1, 1e-9);
+  EXPECT_NEAR(path_of([&](SceneBuilder& b) {
+                return b.unite({ball(b, 1, 0.5), ball(b, 1, -0.5)});
+              }),
+              3, 1e-9);
+  EXPECT_NEAR(path_of([&](SceneBuilder& b) {
+                return b.intersect({ball(b, 1, 0.5), ball(b, 1, -0.5)});
+              }),
+              1, 1e-9);
   EXPECT_NEAR(path_of([&](SceneBuilder& b) { return b.difference({cube(b), ball(b, 0.5, 0)}); }), 1, 1e-9);
   EXPECT_NEAR(path_of([&](SceneBuilder& b) { return capped(b, 1, 1, true); }), 2, 1e-9);
   EXPECT_EQ(path_of([&](SceneBuilder& b) { return capped(b, 1, 1, false); }), kInfinity);
@@ -234,10 +245,11 @@ TEST(Csg, MediaAsTheOriginalMeasuresThem) {
               }),
               1, 1e-9);
   for (const NodeKind kind : {NodeKind::kUnion, NodeKind::kList}) {
-    EXPECT_NEAR(path_of([&](SceneBuilder& b) {
-                  return b.difference({cube(b), b.aggregate(kind, {ball(b, 0.25, 0.5), ball(b, 0.25, -0.5)})});
-                }),
-                1, 1e-9);
+    EXPECT_NEAR(
+        path_of([&](SceneBuilder& b) {
+          return b.difference({cube(b), b.aggregate(kind, {ball(b, 0.25, 0.5), ball(b, 0.25, -0.5)})});
+        }),
+        1, 1e-9);
   }
   EXPECT_NEAR(path_of([&](SceneBuilder& b) {
                 return b.difference({cube(b), b.unite({ball(b, 0.5, 0.2), ball(b, 0.5, -0.2)})});
@@ -247,8 +259,14 @@ TEST(Csg, MediaAsTheOriginalMeasuresThem) {
               return b.difference({cube(b), b.list({ball(b, 0.5, 0.2), ball(b, 0.5, -0.2)})});
             }),
             kInfinity);
-  EXPECT_NEAR(path_of([&](SceneBuilder& b) { return b.difference({cube(b), capped(b, 0.5, 0.3, true)}); }), 1.4, 1e-9);
-  EXPECT_NEAR(path_of([&](SceneBuilder& b) { return b.difference({cube(b), capped(b, 0.5, 0.3, false)}); }), 0.6, 1e-9);
+  EXPECT_NEAR(path_of([&](SceneBuilder& b) {
+                return b.difference({cube(b), capped(b, 0.5, 0.3, true)});
+              }),
+              1.4, 1e-9);
+  EXPECT_NEAR(path_of([&](SceneBuilder& b) {
+                return b.difference({cube(b), capped(b, 0.5, 0.3, false)});
+              }),
+              0.6, 1e-9);
   const auto wide = [](SceneBuilder& b) { return b.box({-1, -1, -1}, {1, 1, 0}); };
   const auto narrow = [](SceneBuilder& b) { return b.box({-0.5, -0.5, 0}, {0.5, 0.5, 1}); };
   EXPECT_NEAR(path_of([&](SceneBuilder& b) {
@@ -284,7 +302,8 @@ TEST(Csg, HolesHaveTheOtherOperandsSurface) {
   Surface medium, clear;
   medium.extinction = 0.5;
   clear.diffuse = {1, 0.5, 1};
-  b.show(b.difference({b.surfaced(b.sphere(1, {0, 0, 0}), medium), b.surfaced(b.sphere(0.5, {0, 0, 0}), clear)}));
+  b.show(b.difference(
+      {b.surfaced(b.sphere(1, {0, 0, 0}), medium), b.surfaced(b.sphere(0.5, {0, 0, 0}), clear)}));
   EXPECT_NEAR(absorbing_path(b), 0.5, 1e-9);
   const auto scene = b.compile();
   TraceScratch scratch;

@@ -14,7 +14,8 @@ struct RandomScene {
 
   explicit RandomScene(std::uint64_t seed) : dice(seed) {
     std::vector<float> altitudes;
-    for (int i = 0; i < 36; ++i) altitudes.push_back(i == 8 ? -2000.0f : static_cast<float>(dice.uniform(0, 0.5)));
+    for (int i = 0; i < 36; ++i)
+      altitudes.push_back(i == 8 ? -2000.0f : static_cast<float>(dice.uniform(0, 0.5)));
     b.files.add("field", height_field_bytes(6, altitudes));
   }
 
@@ -62,7 +63,8 @@ struct RandomScene {
 
   Affine transform() {
     Affine map;
-    if (dice.below(2)) map = then(map, scaling({dice.uniform(0.3, 2), dice.uniform(0.3, 2), dice.uniform(-2, -0.3)}));
+    if (dice.below(2))
+      map = then(map, scaling({dice.uniform(0.3, 2), dice.uniform(0.3, 2), dice.uniform(-2, -0.3)}));
     if (dice.below(2)) map = then(map, about(dice.direction(), dice.uniform(0, 360)));
     return then(map, translation(dice.in_box(1)));
   }
@@ -80,7 +82,8 @@ struct RandomScene {
     const int kind = depth <= 0 ? 0 : dice.below(10);
     if (kind < 4) return decorated(primitive(half), false);
     if (kind == 4 && !names.empty()) {
-      return decorated(b.object(names[static_cast<std::size_t>(dice.below(static_cast<int>(names.size())))]), true);
+      return decorated(b.object(names[static_cast<std::size_t>(dice.below(static_cast<int>(names.size())))]),
+                       true);
     }
     std::vector<NodeId> members;
     const bool csg = kind >= 7;
@@ -93,8 +96,10 @@ struct RandomScene {
     }
     if (!csg && dice.below(12) == 0) members.push_back(b.plane(snapped(half), {0, 0, 1}));
     static constexpr NodeKind kCsg[] = {NodeKind::kUnion, NodeKind::kIntersect, NodeKind::kDifference};
-    const NodeId id =
-        b.aggregate(csg ? kCsg[dice.below(3)] : dice.below(2) ? NodeKind::kList : NodeKind::kGrid, members);
+    const NodeId id = b.aggregate(csg             ? kCsg[dice.below(3)]
+                                  : dice.below(2) ? NodeKind::kList
+                                                  : NodeKind::kGrid,
+                                  members);
     return decorated(id, true);
   }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Which of coincident surfaces is visible (objects.md 2 and 6.2), in every kind of container.
-#include "rayshade/geometry/rank.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <string>
 
+#include "rayshade/geometry/rank.h"
 #include "rayshade/geometry/resolve.h"
 #include "tests/unit/geometry/scene_builder.h"
 
@@ -24,12 +23,30 @@ struct Shape {
 /// Each is met by the ray (0.1, 0.2, 5) + t (0, 0, -1) at a point that its copy shares exactly.
 const std::vector<Shape>& strict_shapes() {
   static const std::vector<Shape> shapes{
-      {"sphere", [](SceneBuilder& b) { return b.sphere(1, {0, 0, 0}); }},
-      {"box", [](SceneBuilder& b) { return b.box({-1, -1, -1}, {1, 1, 0}); }},
-      {"torus", [](SceneBuilder& b) { return b.torus(0.25, 0.25, {0, 0, 0}, {1, 0, 0}); }},
-      {"cylinder", [](SceneBuilder& b) { return b.cylinder(1, {-1, 0, 0}, {1, 0, 0}); }},
-      {"cone", [](SceneBuilder& b) { return b.cone(1, {-1, 0, 0}, 0.5, {1, 0, 0}); }},
-      {"blob", [](SceneBuilder& b) { return b.blob(0.3, {{1, 1, {0, 0, 0}}}); }},
+      {"sphere",
+       [](SceneBuilder& b) {
+         return b.sphere(1, {0, 0, 0});
+       }},
+      {"box",
+       [](SceneBuilder& b) {
+         return b.box({-1, -1, -1}, {1, 1, 0});
+       }},
+      {"torus",
+       [](SceneBuilder& b) {
+         return b.torus(0.25, 0.25, {0, 0, 0}, {1, 0, 0});
+       }},
+      {"cylinder",
+       [](SceneBuilder& b) {
+         return b.cylinder(1, {-1, 0, 0}, {1, 0, 0});
+       }},
+      {"cone",
+       [](SceneBuilder& b) {
+         return b.cone(1, {-1, 0, 0}, 0.5, {1, 0, 0});
+       }},
+      {"blob",
+       [](SceneBuilder& b) {
+         return b.blob(0.3, {{1, 1, {0, 0, 0}}});
+       }},
   };
   return shapes;
 }
@@ -37,9 +54,18 @@ const std::vector<Shape>& strict_shapes() {
 /// All in the plane z = 0.
 const std::vector<Shape>& closed_shapes() {
   static const std::vector<Shape> shapes{
-      {"disc", [](SceneBuilder& b) { return b.disc(1, {0, 0, 0}, {0, 0, 1}); }},
-      {"polygon", [](SceneBuilder& b) { return b.polygon({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}); }},
-      {"triangle", [](SceneBuilder& b) { return b.triangle({-3, -3, 0}, {3, -3, 0}, {0, 3, 0}); }},
+      {"disc",
+       [](SceneBuilder& b) {
+         return b.disc(1, {0, 0, 0}, {0, 0, 1});
+       }},
+      {"polygon",
+       [](SceneBuilder& b) {
+         return b.polygon({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+       }},
+      {"triangle",
+       [](SceneBuilder& b) {
+         return b.triangle({-3, -3, 0}, {3, -3, 0}, {0, 3, 0});
+       }},
   };
   return shapes;
 }
@@ -55,11 +81,22 @@ struct Container {
 const std::vector<Container>& containers() {
   static const std::vector<Container> all{
       {"the world", [](SceneBuilder& b, NodeId x, NodeId y) { b.show(x), b.show(y); }},
-      {"a list", [](SceneBuilder& b, NodeId x, NodeId y) { b.show(b.list({x, y})); }},
-      {"a grid", [](SceneBuilder& b, NodeId x, NodeId y) { b.show(b.grid({x, y})); }},
+      {"a list",
+       [](SceneBuilder& b, NodeId x, NodeId y) {
+         b.show(b.list({x, y}));
+       }},
+      {"a grid",
+       [](SceneBuilder& b, NodeId x, NodeId y) {
+         b.show(b.grid({x, y}));
+       }},
       {"nested lists",
-       [](SceneBuilder& b, NodeId x, NodeId y) { b.show(b.list({b.list({b.grid({x}), b.list({y})})})); }},
-      {"an object used once", [](SceneBuilder& b, NodeId x, NodeId y) { b.show(b.object(b.name(b.list({x, y})))); }},
+       [](SceneBuilder& b, NodeId x, NodeId y) {
+         b.show(b.list({b.list({b.grid({x}), b.list({y})})}));
+       }},
+      {"an object used once",
+       [](SceneBuilder& b, NodeId x, NodeId y) {
+         b.show(b.object(b.name(b.list({x, y}))));
+       }},
       {"an object used twice",
        [](SceneBuilder& b, NodeId x, NodeId y) {
          const auto pair = b.name(b.list({x, y}));
@@ -123,7 +160,8 @@ TEST(Ranks, CoincidentFlatShapesShowTheEarlierOne) {
   for (const Container& container : containers()) {
     for (const Shape& a : closed_shapes()) {
       for (const Shape& b : closed_shapes()) {
-        EXPECT_EQ(visible(container, a.make, b.make), 1) << a.name << ", " << b.name << " in " << container.name;
+        EXPECT_EQ(visible(container, a.make, b.make), 1)
+            << a.name << ", " << b.name << " in " << container.name;
       }
     }
   }
@@ -154,7 +192,8 @@ TEST(Ranks, FlatShapesWinOverEverythingElse) {
 TEST(Ranks, PlanesWinOverBoundedSolids) {
   const Make box = strict_shapes()[1].make;
   for (const Container& container : containers()) {
-    if (container.name == "two objects, each used twice") continue;  // there, both members are unbounded lists
+    if (container.name == "two objects, each used twice")
+      continue;  // there, both members are unbounded lists
     EXPECT_EQ(visible(container, kPlane, box), 1) << container.name;
     EXPECT_EQ(visible(container, box, kPlane), 2) << container.name;
   }
@@ -162,7 +201,9 @@ TEST(Ranks, PlanesWinOverBoundedSolids) {
 
 /// The upper test of CSG is closed, so it takes equal hits from solids, and the first of two is tested last.
 TEST(Ranks, CsgIsClosed) {
-  const Make csg = [](SceneBuilder& b) { return b.unite({b.box({-1, -1, -1}, {1, 1, 0}), b.sphere(0.1, {5, 5, 5})}); };
+  const Make csg = [](SceneBuilder& b) {
+    return b.unite({b.box({-1, -1, -1}, {1, 1, 0}), b.sphere(0.1, {5, 5, 5})});
+  };
   const Make box = strict_shapes()[1].make;
   for (const Container& container : containers()) {
     EXPECT_EQ(visible(container, csg, box), 1) << container.name;
@@ -171,8 +212,8 @@ TEST(Ranks, CsgIsClosed) {
   }
 }
 
-/// A list with a plane in it counts as unbounded (objects.md 6.8, FIX): its bounded members, too, are tested with the
-/// unbounded ones of the list around.
+/// A list with a plane in it counts as unbounded (objects.md 6.8, FIX): its bounded members, too, are tested
+/// with the unbounded ones of the list around.
 TEST(Ranks, MixedListsAreTestedWithTheUnboundedOnes) {
   const Make box = strict_shapes()[1].make;
   const Make mixed = [&](SceneBuilder& b) {
@@ -204,7 +245,9 @@ TEST(Ranks, FarLimit) {
   for (const Shape& shape : strict_shapes()) EXPECT_FALSE(seen(shape.make)) << shape.name;
   EXPECT_FALSE(seen(kPlane));
   for (const Shape& shape : closed_shapes()) EXPECT_TRUE(seen(shape.make)) << shape.name;
-  EXPECT_TRUE(seen([](SceneBuilder& b) { return b.unite({b.sphere(1, {0, 0, 0}), b.sphere(0.1, {5, 5, 5})}); }));
+  EXPECT_TRUE(seen([](SceneBuilder& b) {
+    return b.unite({b.sphere(1, {0, 0, 0}), b.sphere(0.1, {5, 5, 5})});
+  }));
   // Through an instance, too.
   EXPECT_FALSE(seen([](SceneBuilder& b) {
     const auto twice = b.name(b.list({b.sphere(1, {0, 0, 0}), b.sphere(1, {30, 0, 0})}));

@@ -77,8 +77,12 @@ class SceneBuilder {
   NodeId list(std::vector<NodeId> members) { return aggregate(NodeKind::kList, std::move(members)); }
   NodeId grid(std::vector<NodeId> members) { return aggregate(NodeKind::kGrid, std::move(members)); }
   NodeId unite(std::vector<NodeId> members) { return aggregate(NodeKind::kUnion, std::move(members)); }
-  NodeId intersect(std::vector<NodeId> members) { return aggregate(NodeKind::kIntersect, std::move(members)); }
-  NodeId difference(std::vector<NodeId> members) { return aggregate(NodeKind::kDifference, std::move(members)); }
+  NodeId intersect(std::vector<NodeId> members) {
+    return aggregate(NodeKind::kIntersect, std::move(members));
+  }
+  NodeId difference(std::vector<NodeId> members) {
+    return aggregate(NodeKind::kDifference, std::move(members));
+  }
 
   /// `name`: gives what `object` takes.
   std::uint32_t name(NodeId node) {
@@ -108,7 +112,9 @@ class SceneBuilder {
       step.arguments[static_cast<std::size_t>(axis)] = Expression::apply(
           Operation::kAdd,
           {Expression(from[axis]),
-           Expression::apply(Operation::kMultiply, {Expression(speed[axis]), Expression::time(), {}, {}}), {}, {}});
+           Expression::apply(Operation::kMultiply, {Expression(speed[axis]), Expression::time(), {}, {}}),
+           {},
+           {}});
     }
     return moved(node, std::move(step));
   }
@@ -116,9 +122,9 @@ class SceneBuilder {
   NodeId turning(NodeId node, const Vec3& axis, double degrees_per_time) {
     AnimatedStep step;
     step.kind = StepKind::kRotate;
-    step.arguments = {Expression(axis.x), Expression(axis.y), Expression(axis.z),
-                      Expression::apply(Operation::kMultiply,
-                                        {Expression(degrees_per_time), Expression::time(), {}, {}})};
+    step.arguments = {
+        Expression(axis.x), Expression(axis.y), Expression(axis.z),
+        Expression::apply(Operation::kMultiply, {Expression(degrees_per_time), Expression::time(), {}, {}})};
     return moved(node, std::move(step));
   }
   NodeId surfaced(NodeId node, const Surface& surface) {
@@ -170,8 +176,8 @@ class SceneBuilder {
 
 inline Affine about(const Vec3& axis, double degrees) { return rotation_degrees(axis, degrees); }
 
-inline NearestAnswer nearest(const Intersector& intersector, const Ray& ray, TraceScratch& scratch, double lo = kEpsilon,
-                             double hi = kFar, Opacity mask = kAnyOpacity) {
+inline NearestAnswer nearest(const Intersector& intersector, const Ray& ray, TraceScratch& scratch,
+                             double lo = kEpsilon, double hi = kFar, Opacity mask = kAnyOpacity) {
   NearestQuery query;
   query.ray = ray;
   query.lo = lo;
@@ -182,8 +188,8 @@ inline NearestAnswer nearest(const Intersector& intersector, const Ray& ray, Tra
   return answer;
 }
 
-inline bool occluded(const Intersector& intersector, const Ray& ray, TraceScratch& scratch, double lo, double hi,
-                     Opacity mask = kAnyOpacity) {
+inline bool occluded(const Intersector& intersector, const Ray& ray, TraceScratch& scratch, double lo,
+                     double hi, Opacity mask = kAnyOpacity) {
   OcclusionQuery query;
   query.ray = ray;
   query.lo = lo;
