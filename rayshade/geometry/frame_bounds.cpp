@@ -212,7 +212,7 @@ void CompiledScene::rebuild_group(Group& group, bool hierarchies) {
   if (hierarchies && bounded.size() > kLoopLeaves) {
     std::vector<std::uint8_t> opacities(bounded.size());
     for (std::size_t i = 0; i < bounded.size(); ++i) opacities[i] = leaves[bounded[i]].opacity;
-    auto hierarchy = std::make_shared<Hierarchy>(leaf_boxes, opacities, group.bounds);
+    auto hierarchy = std::make_shared<Hierarchy>(std::move(leaf_boxes), opacities, group.bounds);
     order = hierarchy->take_order();
     group.hierarchy = std::move(hierarchy);
   }

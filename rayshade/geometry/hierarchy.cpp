@@ -226,7 +226,7 @@ struct Hierarchy::Builder {
   }
 };
 
-Hierarchy::Hierarchy(std::span<const Bounds3> boxes, std::span<const std::uint8_t> opacities,
+Hierarchy::Hierarchy(std::vector<Bounds3> boxes, std::span<const std::uint8_t> opacities,
                      const Bounds3& all)
     : order_(boxes.size()), bounds_(all) {
   std::iota(order_.begin(), order_.end(), 0u);
@@ -239,8 +239,9 @@ Hierarchy::Hierarchy(std::span<const Bounds3> boxes, std::span<const std::uint8_
       builder.boxes[i].hi[axis] = round_up(boxes[i].hi[axis] - center[axis]);
     }
   }
-  nodes_.reserve(boxes.size() / 6 + 1);
-  builder.build(builder.range(0, static_cast<std::uint32_t>(boxes.size())), 0);
+  std::vector<Bounds3>().swap(boxes);  // a million of them weigh as much as the result
+  nodes_.reserve(order_.size() / 4 + 1);
+  builder.build(builder.range(0, static_cast<std::uint32_t>(order_.size())), 0);
   nodes_.shrink_to_fit();
 }
 

@@ -67,7 +67,7 @@ class Hierarchy {
   };
 
   /// Builds over `boxes`, none of them empty or unbounded. order()[i] tells which box belongs at place i.
-  Hierarchy(std::span<const Bounds3> boxes, std::span<const std::uint8_t> opacities, const Bounds3& all);
+  Hierarchy(std::vector<Bounds3> boxes, std::span<const std::uint8_t> opacities, const Bounds3& all);
 
   /// Only after construction: the permutation; released by take_order.
   std::vector<std::uint32_t> take_order() { return std::move(order_); }
