@@ -15,13 +15,24 @@ Wall::Wall(const Vec3& origin, double radius, const Vec3& end, double end_radius
   const double rise = end_radius - radius;
   slope_ = rise / length_;
   const Vec3 along = normalize({length_, rise, 0});
+  const double widest = std::fmax(std::fabs(radius), std::fabs(end_radius));
+  // With room for roundings of rays from far away; there is no harm in asking a few more.
+  reach_square_ = 1.001 * (0.25 * length_ * length_ + widest * widest);
   cosine_ = along.x;
   sine_ = along.y;
 }
 
 bool Wall::intersect(const Ray& ray, double lo, double hi, ShapeHit& hit) const {
-  const Vec3 o = frame_.local(ray.origin - origin_);
+  const Vec3 start = frame_.local(ray.origin - origin_);
   const Vec3 d = frame_.local(ray.direction);
+  // From the point nearest to the middle of the wall: the coefficients below must not hold squares of a long
+  // way, of which little would remain for rays almost parallel to the wall.
+  const Vec3 from_middle{start.x, start.y, start.z - 0.5 * length_};
+  const double t_start = -dot(from_middle, d) / dot(d, d);
+  const Vec3 nearest = from_middle + t_start * d;
+  if (!(length_squared(nearest) <= reach_square_)) return false;
+  const Vec3 o{nearest.x, nearest.y, nearest.z + 0.5 * length_};
+
   const double r = radius_at(o.z), s = slope_ * d.z;
   const double across = o.x * d.y - o.y * d.x;
   const double vx = r * d.x - s * o.x, vy = r * d.y - s * o.y;
@@ -35,8 +46,9 @@ bool Wall::intersect(const Ray& ray, double lo, double hi, ShapeHit& hit) const 
   const double b = o.x * d.x + o.y * d.y - r * s;
   const double c = o.x * o.x + o.y * o.y - r * r;
   const QuadraticRoots roots = quadratic_roots(a, b, c, std::sqrt(discriminant));
-  for (const double t : {roots.near, roots.far}) {
-    const double z = o.z + t * d.z;
+  for (const double step : {roots.near, roots.far}) {
+    const double t = t_start + step;
+    const double z = o.z + step * d.z;
     if (!(t >= lo && z >= 0 && z <= length_) || !std::isfinite(t)) continue;
     if (!(t <= hi)) return false;
     hit.t = t;

@@ -47,6 +47,7 @@ class Wall {
   AxisFrame frame_;
   double radius_, end_radius_;
   double length_;
+  double reach_square_;   ///< of the ball about the middle that holds the wall
   double slope_;          ///< k
   double cosine_, sine_;  ///< of the angle between axis and wall: k = sine / cosine
 };

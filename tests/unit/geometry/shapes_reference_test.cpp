@@ -152,14 +152,15 @@ TEST(ShapesReference, PlaneFromBothSides) {
 }
 
 TEST(ShapesReference, Triangle) {
-  check(Triangle(shape::Triangle{{{-1, 0, -1}, {1, .2, -.7}, {.3, 0, 1.2}}}), {kOrigin,
-                                                                               {-2.8, 8.1, -4.1},
-                                                                               9.4693885,
-                                                                               {0.209177, 0.073452, -0.086562},
-                                                                               {0.108845, -0.991976, -0.064318},
-                                                                               0.578473,
-                                                                               0.365118,
-                                                                               true});
+  check(Triangle(shape::Triangle{{{-1, 0, -1}, {1, .2, -.7}, {.3, 0, 1.2}}}),
+        {kOrigin,
+         {-2.8, 8.1, -4.1},
+         9.4693885,
+         {0.209177, 0.073452, -0.086562},
+         {0.108845, -0.991976, -0.064318},
+         0.578473,
+         0.365118,
+         true});
 }
 
 TEST(ShapesReference, UvTriangle) {
@@ -183,14 +184,8 @@ TEST(ShapesReference, UvTriangle) {
 }
 
 TEST(ShapesReference, Box) {
-  check(Box(shape::Box{{-1, -1, -1}, {1, .5, .7}}), {kOrigin,
-                                                     {-2.8, 8.1, -3.4},
-                                                     8.9489077,
-                                                     {0.282353, -0.138235, 0.700000},
-                                                     {0, 0, 1},
-                                                     0,
-                                                     0,
-                                                     true});
+  check(Box(shape::Box{{-1, -1, -1}, {1, .5, .7}}),
+        {kOrigin, {-2.8, 8.1, -3.4}, 8.9489077, {0.282353, -0.138235, 0.700000}, {0, 0, 1}, 0, 0, true});
 }
 
 }  // namespace
