@@ -20,7 +20,7 @@ std::string describe_token(std::string_view token, std::string_view text) {
   if (token == "a number") return fmt::format("number {}", text);
   if (token != "a character") return fmt::format("'{}'", text);
   const auto byte = static_cast<unsigned char>(text.empty() ? 0 : text.front());
-  if (text.size() > 1) return fmt::format("'{}', which is no file name", text);
+  if (text.size() > 1) return fmt::format("path '{}', which does not end in a name", text);
   if (byte >= 0x20 && byte < 0x7f) return fmt::format("character '{}'", text);
   return fmt::format("byte 0x{:02x}", byte);
 }

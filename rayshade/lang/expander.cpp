@@ -71,9 +71,13 @@ void Expander::append_apart(std::string* out, std::string_view text) {
   std::size_t start = out->size();
   const std::size_t limit = out->size() > 64 ? out->size() - 64 : 0;
   while (start > limit && is_word_part((*out)[start - 1])) --start;
-  while (start < out->size() && (*out)[start] == '-') ++start;
-  const std::string_view word = std::string_view(*out).substr(start);
-  const bool numeric = number_length(word) != 0 || word == ".";
+  std::string_view word = std::string_view(*out).substr(start);
+  // Of "2-1" only the 1 counts; of "a-1" nothing, it is one name.
+  for (std::size_t n = number_length(word); !word.empty() && n < word.size(); n = number_length(word)) {
+    if (word[n] != '-') break;
+    word.remove_prefix(n + 1);
+  }
+  const bool numeric = word == "." || (!word.empty() && number_length(word) == word.size());
   if (numeric) {
     const char next = text.front(), last = word.back();
     const bool digit = is_digit(next) || (next == '.' && word != ".");

@@ -8,7 +8,7 @@
 namespace rayshade::lang {
 namespace {
 
-constexpr std::size_t kMostTold = 5;
+constexpr std::size_t kMostTold = 8;
 
 const std::vector<std::string_view>& item_words() {
   static const std::vector<std::string_view> words = {

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint64_t kRepeats = 10;       ///< equal warnings shown
 constexpr std::size_t kMostWarnings = 1000;  ///< distinct texts counted; beyond them everything is shared
 constexpr std::uint64_t kWindow = 160;       ///< bytes of a source line shown at most
-constexpr std::size_t kChain = 20;           ///< inclusions shown at most
+constexpr std::size_t kChain = 8;            ///< inclusions shown at most
 
 }  // namespace
 

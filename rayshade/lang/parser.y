@@ -3,8 +3,10 @@
 // Numbers of the sections of the language are given at each group of rules.
 //
 // All optional parts are decided by one token of look-ahead, so the grammar is LALR(1) without conflicts; a change that
-// brings one is a mistake in the change, hence `%expect 0`. States wait for their look-ahead before they reduce
-// (lr.default-reduction), so that messages can say what was possible at the very token that is wrong.
+// brings one is a mistake in the change, hence `%expect 0`. Look-ahead correction (parse.lac) makes the parser stop at the
+// very token that is wrong, before any reduction, so that messages can say what was possible there. Without default
+// reductions (lr.default-reduction) a rule that ends in `error` is reduced only once a token has come that can follow it:
+// that is what makes `yyerrok` in it safe, and recovery end.
 
 %require "3.8"
 %expect 0
@@ -13,6 +15,7 @@
 %define api.token.prefix {TOKEN_}
 %define api.value.type {rayshade::lang::SemanticValue}
 %define api.location.type {rayshade::lang::GrammarSpan}
+%define parse.lac full
 %define lr.default-reduction accepting
 %define parse.error custom
 %locations

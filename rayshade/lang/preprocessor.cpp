@@ -125,7 +125,7 @@ void Preprocessor::text_line(File& file) {
       } else {
         at += length;
       }
-    } else if (const std::size_t number = number_length(text.substr(at, 400))) {
+    } else if (const std::size_t number = number_length(text.substr(at))) {
       at += number;
     } else if (c == '/' && text.substr(at, 2) == "/*") {
       copy(file, at);
