@@ -47,8 +47,8 @@ inline double product_difference(double a, double b, double c, double d) {
   return (p.high - q.high) + (p.low - q.low);
 }
 
-/// Whether a t^2 + 2 b t + c has real roots, and which. The discriminant is computed as if in twice the
-/// precision.
+/// The real roots of a t^2 + 2 b t + c; false where it has none. The discriminant is computed as if in twice
+/// the precision, so nearly equal roots are told apart, or from none, as the coefficients say.
 inline bool solve_quadratic(double a, double b, double c, QuadraticRoots& roots) {
   const double discriminant = product_difference(b, b, a, c);
   if (!(discriminant >= 0)) return false;

@@ -4,8 +4,9 @@
 //   x^2 + y^2 = (r + k z)^2,  0 <= z <= L,
 //
 // in a frame with unit axes at one end of the axis. The original's canonical space, whose origin is the apex
-// of the cone, would lose all accuracy for slightly tapered ones. With h the horizontal part (x, y), R = r +
-// k z at the ray's origin and s = k d.z, a ray meets the infinite wall where A t^2 + 2 B t + C = 0 with
+// of the cone, would lose all accuracy for slightly tapered ones. With o the point of the ray nearest to the
+// middle of the wall, h the horizontal part (x, y) of a vector, R = r + k o.z and s = k d.z, a ray o + t d
+// meets the infinite wall where A t^2 + 2 B t + C = 0 with
 //
 //   A = |h_d|^2 - s^2,  B = h_o.h_d - R s,  C = |h_o|^2 - R^2,
 //   B^2 - A C = |R h_d - s h_o|^2 - (h_o x h_d)^2:
