@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <limits>
+#include <numeric>
 
 #include "rayshade/sampling/random.h"
 
@@ -29,13 +30,21 @@ void store(double* pixel, const Color& color, double alpha) {
 
 BlockRenderer::BlockRenderer(const FrameScene& frame) : frame_(frame), tree_(frame.shading) {}
 
-/// The one sample of a pixel that is not fully sampled (shading.md 7.3).
+/// The one sample of a pixel that is not fully sampled (shading.md 7.3): uniform over its N x N samples, and such that
+/// N x N pixels together take each once. Neighbours then see different parts of the lens, the shutter and the lights,
+/// and calm regions keep less noise than with independent choices.
 int BlockRenderer::chosen_sample(int x, int y) const {
-  const int count = frame_.grid->count();
+  const int side = frame_.grid->samples_per_side();
+  const int count = side * side;
   if (count == 1) return 0;
-  const RandomKey key{frame_.shading.settings->seed, frame_.shading.frame, static_cast<std::uint32_t>(x),
-                      static_cast<std::uint32_t>(y), 0};
-  return std::min(count - 1, static_cast<int>(uniform(key, dimension(0, Purpose::kSampleChoice)) * count));
+  const RandomKey key{frame_.shading.settings->seed, frame_.shading.frame, static_cast<std::uint32_t>(x / side),
+                      static_cast<std::uint32_t>(y / side), 0};
+  // An affine permutation of the tile's pixels; the factor has no divisor in common with the count.
+  const auto random = uniform2(key, dimension(kRootPath, Purpose::kSampleChoice));
+  int factor = 1 + static_cast<int>(random[0] * (count - 1));
+  while (std::gcd(factor, count) != 1) ++factor;
+  const int shift = static_cast<int>(random[1] * count);
+  return ((x % side + side * (y % side)) * factor + shift) % count;
 }
 
 EyeSample BlockRenderer::eye_sample(int x, int y, int k) const {

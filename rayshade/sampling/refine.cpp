@@ -2,14 +2,107 @@
 #include "rayshade/sampling/refine.h"
 
 #include <array>
+#include <cstdlib>
 
 namespace rayshade {
 namespace {
+
+constexpr std::array<std::array<int, 2>, 5> kPlus{{{0, 0}, {-1, 0}, {0, -1}, {1, 0}, {0, 1}}};
 
 bool channel_exceeds(double lowest, double highest, double threshold) {
   const double sum = highest + lowest;
   return sum > kEpsilon && (highest - lowest) / sum > threshold;
 }
+
+int class_of(int x, int y) { return (x + 2 * y) % 5; }
+
+/// The steps of one call; see the head of refine.h.
+class Refinement {
+ public:
+  Refinement(const PixelRect& rect, std::span<const Color> single, const Color& threshold, int width, int height)
+      : threshold_(threshold), width_(width), height_(height), outer_(around(rect, kRefinementReach)), single_(single) {
+    find_active(rect);
+    find_firing(rect);
+  }
+
+  std::vector<bool> choose(const PixelRect& rect) const {
+    std::vector<bool> full(rect.area());
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      for (int x = rect.x0; x < rect.x1; ++x) {
+        bool chosen = on_border(x, y);
+        for (const auto& [dx, dy] : kPlus) {
+          chosen = chosen || (fire_rect_.contains(x + dx, y + dy) && fires_[fire_rect_.index(x + dx, y + dy)]);
+        }
+        full[rect.index(x, y)] = chosen;
+      }
+    }
+    return full;
+  }
+
+ private:
+  PixelRect around(const PixelRect& rect, int margin) const { return halo(rect, margin, width_, height_); }
+  bool on_border(int x, int y) const { return x == 0 || y == 0 || x == width_ - 1 || y == height_ - 1; }
+  const Color& single(int x, int y) const { return single_[outer_.index(x, y)]; }
+
+  void find_active(const PixelRect& rect) {
+    active_rect_ = around(rect, 3);
+    active_.assign(active_rect_.area(), false);
+    for (int y = active_rect_.y0; y < active_rect_.y1; ++y) {
+      for (int x = active_rect_.x0; x < active_rect_.x1; ++x) {
+        if (on_border(x, y)) continue;
+        std::array<Color, 5> values;
+        for (std::size_t i = 0; i < 5; ++i) values[i] = single(x + kPlus[i][0], y + kPlus[i][1]);
+        active_[active_rect_.index(x, y)] = contrast_exceeds(values, threshold_);
+      }
+    }
+  }
+
+  /// Whether the pixel is fully sampled as a pixel of class `rank` sees it.
+  bool sampled_before(int x, int y, int rank) const {
+    if (on_border(x, y)) return true;
+    for (const auto& [dx, dy] : kPlus) {
+      if (class_of(x + dx, y + dy) < rank && active_[active_rect_.index(x + dx, y + dy)]) return true;
+    }
+    return false;
+  }
+
+  /// The mean of the single samples within two pixels, rows and columns added, as far as they are on the screen.
+  Color estimate(int x, int y) const {
+    Color sum;
+    int count = 0;
+    for (int dy = -2; dy <= 2; ++dy) {
+      const int span = 2 - std::abs(dy);
+      for (int dx = -span; dx <= span; ++dx) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
+        sum += single(x + dx, y + dy);
+        ++count;
+      }
+    }
+    return sum * (1.0 / count);
+  }
+
+  void find_firing(const PixelRect& rect) {
+    fire_rect_ = around(rect, 1);
+    fires_.assign(fire_rect_.area(), false);
+    for (int y = fire_rect_.y0; y < fire_rect_.y1; ++y) {
+      for (int x = fire_rect_.x0; x < fire_rect_.x1; ++x) {
+        if (!active_[active_rect_.index(x, y)]) continue;
+        std::array<Color, 5> values;
+        for (std::size_t i = 0; i < 5; ++i) {
+          const int px = x + kPlus[i][0], py = y + kPlus[i][1];
+          values[i] = sampled_before(px, py, class_of(x, y)) ? estimate(px, py) : single(px, py);
+        }
+        fires_[fire_rect_.index(x, y)] = contrast_exceeds(values, threshold_);
+      }
+    }
+  }
+
+  Color threshold_;
+  int width_, height_;
+  PixelRect outer_, active_rect_, fire_rect_;
+  std::span<const Color> single_;
+  std::vector<bool> active_, fires_;
+};
 
 }  // namespace
 
@@ -30,34 +123,7 @@ bool contrast_exceeds(std::span<const Color, 5> colors, const Color& threshold) 
 
 std::vector<bool> choose_full(const PixelRect& rect, std::span<const Color> single, const Color& threshold,
                               int screen_width, int screen_height) {
-  const PixelRect outer = halo(rect, kRefinementReach, screen_width, screen_height);
-  const PixelRect tested = halo(rect, 1, screen_width, screen_height);
-  const auto value = [&](int x, int y) -> const Color& {
-    return single[static_cast<std::size_t>(y - outer.y0) * outer.width() + (x - outer.x0)];
-  };
-  // Round one. Corners of `tested` reach nobody in `rect` and lack a neighbour in `outer` only off the screen.
-  std::vector<bool> active(static_cast<std::size_t>(tested.width()) * tested.height());
-  for (int y = std::max(tested.y0, 1); y < std::min(tested.y1, screen_height - 1); ++y) {
-    for (int x = std::max(tested.x0, 1); x < std::min(tested.x1, screen_width - 1); ++x) {
-      const std::array<Color, 5> plus{value(x, y), value(x - 1, y), value(x + 1, y), value(x, y - 1), value(x, y + 1)};
-      active[static_cast<std::size_t>(y - tested.y0) * tested.width() + (x - tested.x0)] =
-          contrast_exceeds(plus, threshold);
-    }
-  }
-  // Round two.
-  const auto is_active = [&](int x, int y) {
-    return tested.contains(x, y) && active[static_cast<std::size_t>(y - tested.y0) * tested.width() + (x - tested.x0)];
-  };
-  std::vector<bool> full(static_cast<std::size_t>(rect.width()) * rect.height());
-  for (int y = rect.y0; y < rect.y1; ++y) {
-    for (int x = rect.x0; x < rect.x1; ++x) {
-      const bool border = x == 0 || y == 0 || x == screen_width - 1 || y == screen_height - 1;
-      full[static_cast<std::size_t>(y - rect.y0) * rect.width() + (x - rect.x0)] =
-          border || is_active(x, y) || is_active(x - 1, y) || is_active(x + 1, y) || is_active(x, y - 1) ||
-          is_active(x, y + 1);
-    }
-  }
-  return full;
+  return Refinement(rect, single, threshold, screen_width, screen_height).choose(rect);
 }
 
 }  // namespace rayshade

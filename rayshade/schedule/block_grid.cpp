@@ -18,7 +18,7 @@ Block BlockGrid::block(std::int64_t number) const {
 int default_block_side(int width, int height, int workers) {
   const double pixels = static_cast<double>(width) * height;
   int side = 64;
-  while (side > 16 && pixels / (static_cast<double>(side) * side) < 24.0 * workers) side /= 2;
+  while (side > 16 && pixels / (static_cast<double>(side) * side) < 12.0 * workers) side /= 2;
   return side;
 }
 

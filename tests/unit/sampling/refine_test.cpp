@@ -39,13 +39,36 @@ TEST(ChooseFullTest, BorderOfTheScreenIsAlwaysFull) {
   }
 }
 
-TEST(ChooseFullTest, AnIsolatedPixelReachesTwoPixelsAlongTheAxes) {
-  std::vector<Color> single(11 * 11, Color{0.1, 0.1, 0.1});
-  single[5 * 11 + 5] = {1, 1, 1};
-  const std::vector<bool> full = choose_full({0, 0, 11, 11}, single, {0.2, 0.15, 0.3}, 11, 11);
-  for (int y = 1; y < 10; ++y) {
-    for (int x = 1; x < 10; ++x) {
-      EXPECT_EQ(full[static_cast<std::size_t>(y) * 11 + x], std::abs(x - 5) + std::abs(y - 5) <= 2) << x << ' ' << y;
+TEST(ChooseFullTest, ALoneOddSampleCostsFivePixels) {
+  for (int offset = 0; offset < 5; ++offset) {
+    std::vector<Color> single(13 * 11, Color{0.1, 0.1, 0.1});
+    const int at = 4 + offset;
+    single[5 * 13 + static_cast<std::size_t>(at)] = {0.16, 0.16, 0.16};
+    const std::vector<bool> full = choose_full({0, 0, 13, 11}, single, {0.2, 0.15, 0.3}, 13, 11);
+    int count = 0;
+    for (int y = 1; y < 10; ++y) {
+      for (int x = 1; x < 12; ++x) count += full[static_cast<std::size_t>(y) * 13 + static_cast<std::size_t>(x)];
+    }
+    EXPECT_EQ(count, 5) << offset;
+    EXPECT_TRUE(full[5 * 13 + static_cast<std::size_t>(at)]) << offset;
+  }
+}
+
+TEST(ChooseFullTest, AnEdgeIsSampledOnBothSidesAllAlong) {
+  const int width = 24, height = 20;
+  for (const double slope : {0.0, 0.4, 1.0, 2.5}) {
+    std::vector<Color> single;
+    const auto bright = [&](int x, int y) { return x > 4 + slope * y; };
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) single.push_back(bright(x, y) ? Color{1, 1, 1} : Color{.2, .2, .2});
+    }
+    const std::vector<bool> full = choose_full({0, 0, width, height}, single, {0.2, 0.15, 0.3}, width, height);
+    for (int y = 1; y < height - 1; ++y) {
+      for (int x = 1; x < width - 1; ++x) {
+        const bool edge = bright(x, y) != bright(x - 1, y) || bright(x, y) != bright(x + 1, y) ||
+                          bright(x, y) != bright(x, y - 1) || bright(x, y) != bright(x, y + 1);
+        EXPECT_TRUE(!edge || full[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)]) << slope << ' ' << x << ' ' << y;
+      }
     }
   }
 }

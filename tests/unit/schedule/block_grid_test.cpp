@@ -36,7 +36,7 @@ TEST(BlockGridTest, LargePicturesNeed64Bits) {
 TEST(BlockSideTest, GivesEachWorkerDozensOfBlocksWhereThePictureAllows) {
   EXPECT_EQ(default_block_side(2000, 2000, 1), 64);
   const int side = default_block_side(512, 512, 8);
-  EXPECT_GE(BlockGrid(512, 512, side).count(), 8 * 24);
+  EXPECT_GE(BlockGrid(512, 512, side).count(), 8 * 12);
   EXPECT_EQ(default_block_side(16, 16, 64), 16);
 }
 
