@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "rayshade/cli/options.h"
+#include "rayshade/image/format.h"
 
 namespace rayshade {
 namespace {
@@ -144,7 +145,11 @@ std::vector<OptionSpec> make_table() {
   t.push_back({0, "format", {"FORMAT"}, kPicture,
                "Format of the picture: png, png16, ppm, pfm, exr, rle or raw. Otherwise told by the suffix of the file; "
                "png where there is none.",
-               [](Options& o, Values v) { o.format = v[0]; }, {"png", "png16", "ppm", "pfm", "exr", "rle", "raw"}});
+               [](Options& o, Values v) {
+                 format_by_name(v[0]);  // complains at once
+                 o.format = v[0];
+               },
+               {"png", "png16", "ppm", "pfm", "exr", "rle", "raw"}});
   t.push_back({'G', "gamma", {"G"}, kPicture, "Display gamma: stored values are v^(1/G). 1 without it.",
                [](Options& o, Values v) { o.gamma = parse_real(v[0], "-G"); }});
   t.push_back({0, "srgb", {}, kPicture, "Store values by the sRGB transfer function, and say so in the file.",

@@ -48,8 +48,8 @@ TEST_P(GateTest, PictureIsTheKeptOne) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, GateTest, ::testing::ValuesIn(scenes()),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& scene) {
+                           std::string name = scene.param;
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });

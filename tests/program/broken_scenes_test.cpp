@@ -41,7 +41,7 @@ TEST(BrokenScenesTest, EachEndsAsExpected) {
     SCOPED_TRACE(e.name);
     const fs::path picture = folder.path() / "picture.png";
     // Address space is limited so that eating the machine is a failure here.
-    const Outcome done = run(folder.path(), "-q -R 16 16 -S 1 -O picture.png " + e.name, {}, 30,
+    const Outcome done = run(folder.path(), "-q -S 1 -O picture.png " + e.name, {}, 30,
                              std::string(BINARY_DIR).find("asan") == std::string::npos &&
                                      std::string(BINARY_DIR).find("tsan") == std::string::npos
                                  ? "ulimit -v 4000000;"
