@@ -10,6 +10,9 @@ namespace rayshade::lang {
 class Transforms {
  public:
   Transforms(Context& context, Expressions& expressions) : context_(context), expressions_(expressions) {}
+  ~Transforms() { recover(); }
+  Transforms(const Transforms&) = delete;
+  Transforms& operator=(const Transforms&) = delete;
 
   void scale(Value x, Value y, Value z, const Span& span);
   void translate(Value x, Value y, Value z, const Span& span);
