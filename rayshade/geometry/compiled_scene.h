@@ -82,6 +82,7 @@ struct Group {
   std::uint64_t order_span = 0;                     ///< how many orders its leaves use, instances' contents included
   Bounds3 bounds;                                   ///< of the bounded leaves, over the frame's shutter interval
   double condition = 1;                             ///< largest growth of rounding errors by the placements below
+  bool few_simple = false;                          ///< at most two bounded leaves, cheaper to test than a box
   bool solid = false;                               ///< one closed solid: whoever leaves it was inside its bounds
   std::shared_ptr<const Hierarchy> hierarchy;       ///< none where a loop over the leaves is as good
 };

@@ -120,6 +120,7 @@ bool over_group(TraceContext& context, const Group& group, const Ray& ray, doubl
   const LeafId bounded = group.first + group.unbounded;
   if (group.unbounded > 0 && test(group.first, bounded)) return true;
   if (group.unbounded == group.count) return false;
+  if (group.few_simple) return test(bounded, group.first + group.count);
   ++context.bounds_tests;
   if (!group.hierarchy) {
     return clip_to_box(group.bounds, group.condition, ray, lo, limit()) &&

@@ -205,6 +205,11 @@ void CompiledScene::rebuild_group(Group& group, bool hierarchies) {
     }
   }
   group.unbounded = static_cast<std::uint32_t>(unbounded.size());
+  group.few_simple = bounded.size() + empty.size() <= 2 && std::all_of(bounded.begin(), bounded.end(), [&](LeafId id) {
+    const Leaf& leaf = leaves[id];
+    return leaf.placement == kNone && (leaf.kind == LeafKind::kSphere || leaf.kind == LeafKind::kBox ||
+                                       leaf.kind == LeafKind::kDisc || leaf.kind == LeafKind::kTriangle);
+  });
   // The original's order of tests first, so that the result does not depend on how often this has been done.
   const auto before = [&](LeafId a, LeafId b) { return leaves[a].order < leaves[b].order; };
   std::sort(unbounded.begin(), unbounded.end(), before);

@@ -51,7 +51,8 @@ bool clip(const Bounds3& box, double slack, const Ray& ray, double lo, double hi
       if (a > 0 || b < 0) return false;
       continue;
     }
-    const double in = (d > 0 ? a : b) / d, out = (d > 0 ? b : a) / d;
+    const double inverse = 1 / d;
+    const double in = (d > 0 ? a : b) * inverse, out = (d > 0 ? b : a) * inverse;
     if (in > entry) entry = in;
     if (out < exit) exit = out;
   }

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "rayshade/math/fused.h"
-
 namespace rayshade {
 namespace {
 
@@ -122,7 +120,6 @@ LocalHit resolve_local(const CompiledScene& scene, const Hit& hit, const Ray& wo
     out.ray.direction = normalize(out.ray.direction);
   }
   out.point = surface.point;
-  out.along_ray = fused::add_scaled(out.ray.origin, out.t, out.ray.direction);
   out.normal = surface.normal;
   out.geometric_normal = surface.geometric_normal;
   out.error = surface.error;

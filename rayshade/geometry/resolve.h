@@ -11,8 +11,6 @@ struct LocalHit {
   Ray ray;                     ///< in primitive space, direction of unit length
   double t = 0;                ///< distance along `ray` (not the world distance)
   Vec3 point, normal, geometric_normal;
-  Vec3 along_ray;              ///< origin + t direction, in fused arithmetic: what textures see. On a surface in a plane
-                               ///< at which a texture changes, its rounding shows (textures.md D20)
   double error = 0;            ///< primitive space
   bool smooth = false;
   bool entering = true;

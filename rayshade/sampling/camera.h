@@ -53,9 +53,7 @@ class Camera {
  private:
   // In fused arithmetic, as the reference pictures were made: where a texture changes at a plane of the scene, the
   // pattern of rounding shows (textures.md D20).
-  Vec3 direction(double u, double v) const {
-    return fused::normalize(fused::add_scaled(fused::add_scaled(corner_, u, step_x_), v, step_y_));
-  }
+  Vec3 direction(double u, double v) const { return fused::unit_of_sum(corner_, u, step_x_, v, step_y_); }
 
   Vec3 eye_, view_;  // view_: eye to look point
   Vec3 corner_;      // eye to the screen point (0, 0)

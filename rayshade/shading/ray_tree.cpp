@@ -12,6 +12,8 @@ namespace {
 
 /// Lights of one run of shadow queries; bounds what is pending for scenes with thousands of area cells.
 constexpr std::size_t kQueriesPerRun = 4096;
+/// Scenes of so few leaves have their transparent shadows walked at once, through all leaves.
+constexpr std::uint32_t kFewLeaves = 16;
 /// A shadow ray that meets more transparent surfaces than this is taken as blocked.
 constexpr int kLongestWalk = 100'000;
 
@@ -19,6 +21,21 @@ bool any_above(const Color& c, const Color& limit) { return c.r > limit.r || c.g
 bool any_above(const Color& c, double limit) { return c.r > limit || c.g > limit || c.b > limit; }
 bool all_below(const Color& c, double limit) { return c.r < limit && c.g < limit && c.b < limit; }
 bool is_black(const Color& c) { return c.r == 0 && c.g == 0 && c.b == 0; }
+
+/// base^exponent; by multiplication for the whole exponents that highlights mostly have (relative error below
+/// exponent ulps, far below what a pixel holds).
+double power(double base, double exponent) {
+  constexpr int kMost = 256;
+  if (!(exponent > 0 && exponent <= kMost)) return fn::pow(base, exponent);
+  auto left = static_cast<unsigned>(exponent);
+  if (static_cast<double>(left) != exponent) return fn::pow(base, exponent);
+  double out = left & 1u ? base : 1;
+  for (double square = base; left >>= 1;) {
+    square *= square;
+    if (left & 1u) out *= square;
+  }
+  return out;
+}
 
 enum Slot : std::uint8_t { kTransmittedSlot = 0, kReflectedSlot = 1 };
 
@@ -37,33 +54,37 @@ class Gloss final : public GlossDraws {
 
 }  // namespace
 
-/// A ray of the tree, from its birth until its colour has gone to its parent.
+/// A ray of the tree, from its birth until its colour has gone to its parent. Nodes are reused without being cleared:
+/// each group of members is written before it is read.
 struct RayTree::Node {
+  // At birth:
   Ray ray;
-  double lo = kEpsilon;
-  Color contribution{1, 1, 1};
-  std::uint64_t path = 0;
-  std::uint32_t parent = kNone;
-  std::uint32_t root = 0;                ///< index of the eye sample
-  std::uint32_t depth = 0;
-  RayKind kind = RayKind::kEye;
-  Slot slot = kTransmittedSlot;
-
+  double lo;
+  Color contribution;
+  std::uint64_t path;
+  std::uint32_t parent;
+  std::uint32_t root;                    ///< index of the eye sample
+  std::uint32_t depth;
+  RayKind kind;
+  Slot slot;
+  std::uint8_t children;                 ///< bit per slot
+  std::uint8_t waiting;
   // The media stack is a chain of the ancestors that pushed an entry; they outlive their descendants.
-  std::uint32_t medium = kNone;          ///< node whose entry is on top
-  std::uint32_t medium_below = kNone;    ///< entry pushed by this ray
-  double medium_index = 1, medium_extinction = 1;
+  std::uint32_t medium;                  ///< node whose entry is on top; kNone: the stack is empty
+
+  // If it entered a medium, the entry pushed by this ray:
+  std::uint32_t medium_below;
+  double medium_index, medium_extinction;
 
   // Known after its own hit was shaded:
-  double distance = kFar;
+  double distance;
   Vec3 end;
   Color color;
+  // Per child that was spawned; child_color and child_distance when it is finished:
   Color factor[2];
   Color child_color[2];
-  double child_distance = kFar;
-  double child_extinction = 1;
-  std::uint8_t children = 0;             ///< bit per slot
-  std::uint8_t waiting = 0;
+  double child_distance;
+  double child_extinction;
 };
 
 /// A hit being shaded.
@@ -112,7 +133,6 @@ std::uint32_t RayTree::allocate() {
   if (!free_.empty()) {
     const std::uint32_t id = free_.back();
     free_.pop_back();
-    nodes_[id] = Node{};
     return id;
   }
   nodes_.emplace_back();
@@ -125,8 +145,18 @@ void RayTree::trace(std::span<const EyeSample> samples, std::span<SampleResult> 
     const std::size_t count = std::min(batch_, samples.size() - first);
     for (std::size_t i = first + count; i-- > first;) {
       const std::uint32_t id = allocate();
-      nodes_[id].ray = samples[i].ray;
-      nodes_[id].root = static_cast<std::uint32_t>(i);
+      Node& node = nodes_[id];
+      node.ray = samples[i].ray;
+      node.lo = kEpsilon;
+      node.contribution = {1, 1, 1};
+      node.path = kRootPath;
+      node.parent = kNone;
+      node.root = static_cast<std::uint32_t>(i);
+      node.depth = 0;
+      node.kind = RayKind::kEye;
+      node.slot = kTransmittedSlot;
+      node.children = node.waiting = 0;
+      node.medium = kNone;
       results[i] = SampleResult{};
       pending_.push_back(id);
     }
@@ -291,6 +321,11 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light, std::
 void RayTree::answer_shadows(std::span<SampleResult> results) {
   if (shadow_queries_.empty()) return;
   if (shadow_answers_.size() < shadow_queries_.size()) shadow_answers_.resize(shadow_queries_.size());
+  const bool walk = scene_.settings->transparent_shadows && scene_.compiled->has_transparent;
+  if (walk && scene_.compiled->groups[0].count <= kFewLeaves) {
+    follow_transparent(true, results);
+    return;
+  }
   const std::span<OcclusionAnswer> answers(shadow_answers_.data(), shadow_queries_.size());
   scene_.intersector->occluded(shadow_queries_, answers, scratch_);
   for (std::size_t i = 0; i < shadow_queries_.size(); ++i) {
@@ -301,23 +336,24 @@ void RayTree::answer_shadows(std::span<SampleResult> results) {
     pending.blocked = answers[i].occluded;
     if (pending.blocked) ++counts_.shadow_hits;
   }
-  if (scene_.settings->transparent_shadows && scene_.compiled->has_transparent) follow_transparent(results);
+  if (walk) follow_transparent(false, results);
 }
 
 /// The ordered walk of shading.md 5.3. Where something certainly opaque is in the way, a shadow ray that meets no
 /// transparent leaf is blocked at once; but an opaque surface that coincides with a transparent one is passed with it
-/// (the walk goes on behind it), so those that meet one walk through all leaves.
-void RayTree::follow_transparent(std::span<SampleResult> results) {
+/// (the walk goes on behind it), so those that meet one walk through all leaves. `through_all`: so do all, where a
+/// question about opaque leaves has not been asked because it would cost as much.
+void RayTree::follow_transparent(bool through_all, std::span<SampleResult> results) {
   walks_.clear();
   for (std::uint32_t i = 0; i < shadow_queries_.size(); ++i) {
     const bool opaque = lights_[shadow_owner_[i]].blocked;
-    walks_.push_back({shadow_owner_[i], i, shadow_queries_[i].lo, false, 1, 0, opaque, false});
+    walks_.push_back({shadow_owner_[i], i, shadow_queries_[i].lo, false, 1, 0, opaque, through_all});
   }
-  std::vector<NearestQuery> queries;
-  std::vector<NearestAnswer> answers;
+  std::vector<NearestQuery>& queries = walk_queries_;
   while (!walks_.empty()) {
     queries.resize(walks_.size());
-    answers.resize(walks_.size());
+    if (walk_answers_.size() < walks_.size()) walk_answers_.resize(walks_.size());
+    const std::span<NearestAnswer> answers(walk_answers_.data(), walks_.size());
     for (std::size_t i = 0; i < walks_.size(); ++i) {
       const OcclusionQuery& query = shadow_queries_[walks_[i].query];
       const Opacity mask = walks_[i].through_all ? kAnyOpacity : kTransparent;
@@ -338,15 +374,13 @@ void RayTree::follow_transparent(std::span<SampleResult> results) {
         walks_[kept++] = walk;
         continue;
       }
-      if (walk.steps++ == 0) {
-        counts_.shadow_hits += !walk.opaque;
-        ++counts_.transparent_walks;
-      }
+      if (walk.steps++ == 0) counts_.shadow_hits += !walk.opaque;
       const Hit& hit = answers[i].hit;
       if (walk.steps > kLongestWalk || surface_of(*scene_.compiled, hit).transparency < kEpsilon) {
         pending.blocked = true;
         continue;
       }
+      counts_.transparent_walks += walk.steps == 1;
       if (walk.in_medium && walk.extinction != 1) {
         pending.color *= fn::pow(walk.extinction, hit.t() - walk.near);
       }
@@ -379,12 +413,12 @@ void RayTree::combine_lights() {
       if (pending.cosine > 0) {
         node.color += (surface.diffuse * pending.cosine) * pending.color;
         if (surface.specular_exponent >= kEpsilon && pending.highlight > 0) {
-          node.color += (surface.specular * fn::pow(pending.highlight, surface.specular_exponent)) * pending.color;
+          node.color += (surface.specular * power(pending.highlight, surface.specular_exponent)) * pending.color;
         }
       } else {
         node.color += (surface.translucent * -pending.cosine) * pending.color;
         if (surface.transmitted_exponent >= kEpsilon && -pending.highlight > 0) {
-          node.color += (surface.body * fn::pow(-pending.highlight, surface.transmitted_exponent)) * pending.color;
+          node.color += (surface.body * power(-pending.highlight, surface.transmitted_exponent)) * pending.color;
         }
         node.color *= surface.translucency;
       }
@@ -421,6 +455,7 @@ void RayTree::spawn(Shade& shade) {
     out.depth = node.depth + 1;
     out.kind = kind;
     out.slot = slot;
+    out.children = out.waiting = 0;
     out.medium = node.medium;
     node.factor[slot] = factor;
     node.children = static_cast<std::uint8_t>(node.children | (1u << slot));

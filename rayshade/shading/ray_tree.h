@@ -104,7 +104,7 @@ class RayTree {
   void shade_hits(std::span<const EyeSample> samples, std::span<SampleResult> results);
   void emit_lights(std::size_t first_light, std::size_t last_light, std::span<const EyeSample> samples);
   void answer_shadows(std::span<SampleResult> results);
-  void follow_transparent(std::span<SampleResult> results);
+  void follow_transparent(bool through_all, std::span<SampleResult> results);
   void combine_lights();
   void spawn(Shade& shade);
   void finish(std::uint32_t node, std::span<SampleResult> results);
@@ -128,6 +128,8 @@ class RayTree {
   std::vector<OcclusionAnswer> shadow_answers_;
   std::vector<std::uint32_t> shadow_owner_;  ///< index in lights_ of each shadow query
   std::vector<Walk> walks_;
+  std::vector<NearestQuery> walk_queries_;
+  std::vector<NearestAnswer> walk_answers_;
 };
 
 }  // namespace rayshade

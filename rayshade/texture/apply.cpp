@@ -2,6 +2,7 @@
 // The walk outward (textures.md 1.2), and each texture put to work on the record of one hit.
 #include "rayshade/texture/apply.h"
 
+#include "rayshade/math/fused.h"
 #include "rayshade/texture/image_texture.h"
 #include "rayshade/texture/noise.h"
 #include "rayshade/texture/procedural.h"
@@ -245,6 +246,12 @@ void extend_frame(Evaluation& e, const AffinePair& map) {
   e.frame.inverse = then(map.inverse, e.frame.inverse);
 }
 
+/// The point that textures see: along the ray, in fused arithmetic. On a surface in a plane at which a texture changes,
+/// its rounding shows (D20).
+Vec3 textured_point(const LocalHit& local) {
+  return fused::add_scaled(local.ray.origin, local.t, local.ray.direction);
+}
+
 }  // namespace
 
 void evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, const Hit& hit,
@@ -258,7 +265,7 @@ void evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, 
     return;
   }
   const LocalHit local = resolve_local(scene, hit, world_ray, scratch);
-  Evaluation e{scene,        hit, local, sample, {world_ray.time, scene.frame}, local.along_ray,
+  Evaluation e{scene,        hit, local, sample, {world_ray.time, scene.frame}, textured_point(local),
                local.normal, {},  false, 0,      surface_of(scene, hit)};
   Vec3 geometric = local.geometric_normal;
   Vec3 exact = local.point;
@@ -294,7 +301,7 @@ Transmittance evaluate_transmittance(const CompiledScene& scene, const CompiledT
   if (needs.levels == 0) return result(surface_of(scene, hit));
   // Nothing that changes transmission reads the shading normal, so it is not carried outward.
   const SampleContext sample;
-  Evaluation e{scene,        hit, local, sample, {world_ray.time, scene.frame}, local.along_ray,
+  Evaluation e{scene,        hit, local, sample, {world_ray.time, scene.frame}, textured_point(local),
                local.normal, {},  false, 0,      surface_of(scene, hit)};
   PathWalk walk(scene, hit, world_ray.time, scratch);
   PathLevel level;
