@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Time per call of what rendering consists of: exact tests of every shape (a mix of hits and misses, rays toward the
-// shape's surroundings), noise, random numbers. Figures are for comparing kernels within one run.
+// Time per call of what rendering consists of: exact tests of every shape (a mix of hits and misses, rays
+// toward the shape's surroundings), noise, random numbers. Figures are for comparing kernels within one run.
 #include <benchmark/benchmark.h>
 
 #include <random>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Parsing speed on a mix of primitives, surfaces and transforms: parse_bench [MEGABYTES] [FILE]. With FILE it only writes
-// the scene there.
+// Parsing speed on a mix of primitives, surfaces and transforms: parse_bench [MEGABYTES] [FILE]. With FILE it
+// only writes the scene there.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -20,20 +20,37 @@ std::string mixed_scene(std::size_t bytes) {
   int surfaces = 1;
   while (out.size() < bytes) {
     if (random() % 50 == 0) {
-      out += fmt::format("surface s{} ambient .1 .1 .1 diffuse {} .5 .5 specular .2 .2 .2 specpow 20 reflect .1\n", surfaces,
-                         std::abs(u(random)) / 10);
+      out += fmt::format(
+          "surface s{} ambient .1 .1 .1 diffuse {} .5 .5 specular .2 .2 .2 specpow 20 reflect .1\n", surfaces,
+          std::abs(u(random)) / 10);
       ++surfaces;
     }
     const std::string s = fmt::format("s{}", random() % static_cast<unsigned>(surfaces));
     switch (random() % 8) {
-      case 0: out += fmt::format("sphere {} {} {}\n", s, 0.01 + std::abs(u(random)), v()); break;
-      case 1: out += fmt::format("triangle {} {} {} {}\n", s, v(), v(), v()); break;
-      case 2: out += fmt::format("triangle {} {} {} {} {} {} {}\n", s, v(), v(), v(), v(), v(), v()); break;
-      case 3: out += fmt::format("poly {} {} {} {} {}\n", s, v(), v(), v(), v()); break;
-      case 4: out += fmt::format("cylinder {} .5 {} {}\n", s, v(), v()); break;
-      case 5: out += fmt::format("cone {} .5 {} .25 {}\n", s, v(), v()); break;
-      case 6: out += fmt::format("box {} {} {} rotate 0 0 1 {} translate {}\n", s, v(), v(), n(), v()); break;
-      default: out += fmt::format("sphere {} 1 {} scale 2 3 4 translate {}\n", s, v(), v()); break;
+      case 0:
+        out += fmt::format("sphere {} {} {}\n", s, 0.01 + std::abs(u(random)), v());
+        break;
+      case 1:
+        out += fmt::format("triangle {} {} {} {}\n", s, v(), v(), v());
+        break;
+      case 2:
+        out += fmt::format("triangle {} {} {} {} {} {} {}\n", s, v(), v(), v(), v(), v(), v());
+        break;
+      case 3:
+        out += fmt::format("poly {} {} {} {} {}\n", s, v(), v(), v(), v());
+        break;
+      case 4:
+        out += fmt::format("cylinder {} .5 {} {}\n", s, v(), v());
+        break;
+      case 5:
+        out += fmt::format("cone {} .5 {} .25 {}\n", s, v(), v());
+        break;
+      case 6:
+        out += fmt::format("box {} {} {} rotate 0 0 1 {} translate {}\n", s, v(), v(), n(), v());
+        break;
+      default:
+        out += fmt::format("sphere {} 1 {} scale 2 3 4 translate {}\n", s, v(), v());
+        break;
     }
   }
   return out;
@@ -62,6 +79,7 @@ int main(int argc, char** argv) {
     nodes = result.scene.nodes.size();
     if (!result.ok) return 1;
   }
-  fmt::print("parsed {:.1f} MB, {} objects, in {:.2f} s: {:.1f} MB/s\n", size / 1e6, nodes, best, size / 1e6 / best);
+  fmt::print("parsed {:.1f} MB, {} objects, in {:.2f} s: {:.1f} MB/s\n", size / 1e6, nodes, best,
+             size / 1e6 / best);
   return 0;
 }

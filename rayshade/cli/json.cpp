@@ -11,9 +11,12 @@ std::string JsonWriter::quoted(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') out += {'\\', c};
-    else if (byte < 0x20 || byte >= 0x7f) out += fmt::format("\\u{:04x}", byte);  // bytes as Latin-1
-    else out += c;
+    if (c == '"' || c == '\\')
+      out += {'\\', c};
+    else if (byte < 0x20 || byte >= 0x7f)
+      out += fmt::format("\\u{:04x}", byte);  // bytes as Latin-1
+    else
+      out += c;
   }
   return out + "\"";
 }

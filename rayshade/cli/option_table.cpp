@@ -29,199 +29,369 @@ void preview(Options& o) {
   o.settings.jitter = true;
 }
 
-Preprocess flipped(Preprocess now) { return now == Preprocess::kNever ? Preprocess::kAuto : Preprocess::kNever; }
+Preprocess flipped(Preprocess now) {
+  return now == Preprocess::kNever ? Preprocess::kAuto : Preprocess::kNever;
+}
 
 std::vector<OptionSpec> make_table() {
   std::vector<OptionSpec> t;
   // Scene
-  t.push_back({'P', "preprocessor-args", {"ARGS"}, kScene,
-               "Preprocess the scene, with these arguments: -Dname, -Dname=text, -Uname, -Idir, separated by blanks. "
-               "Replaces an earlier -P.",
-               [](Options& o, Values v) { o.preprocessor_arguments = v[0]; }});
-  t.push_back({'u', "toggle-preprocessor", {}, kScene,
+  t.push_back(
+      {'P',
+       "preprocessor-args",
+       {"ARGS"},
+       kScene,
+       "Preprocess the scene, with these arguments: -Dname, -Dname=text, -Uname, -Idir, separated by blanks. "
+       "Replaces an earlier -P.",
+       [](Options& o, Values v) { o.preprocessor_arguments = v[0]; }});
+  t.push_back({'u',
+               "toggle-preprocessor",
+               {},
+               kScene,
                "Toggle preprocessing, which is otherwise done when the scene has a directive or -P is given.",
                [](Options& o, Values) { o.preprocess = flipped(o.preprocess); }});
-  t.push_back({'f', "flip-normals", {}, kScene, "Toggle flipping of the normals of polygons and triangles.",
+  t.push_back({'f',
+               "flip-normals",
+               {},
+               kScene,
+               "Toggle flipping of the normals of polygons and triangles.",
                [](Options& o, Values) { o.settings.flip_normals = !o.settings.flip_normals; }});
-  t.push_back({0, "check", {}, kScene, "Read the scene and report its errors and warnings; render nothing.",
+  t.push_back({0,
+               "check",
+               {},
+               kScene,
+               "Read the scene and report its errors and warnings; render nothing.",
                [](Options& o, Values) { o.action = Action::kCheck; }});
-  t.push_back({0, "dump-scene", {}, kScene,
-               "Write the scene as canonical text to standard output (or to the file of -O) and render nothing. Its hash "
-               "names the scene.",
+  t.push_back({0,
+               "dump-scene",
+               {},
+               kScene,
+               "Write the scene as canonical text to standard output (or to the file of -O) and render "
+               "nothing. Its hash names the scene.",
                [](Options& o, Values) { o.action = Action::kDumpScene; }});
 
   // View and window
-  t.push_back({'R', "resolution", {"X", "Y"}, kView, "Set the size of the screen in pixels.",
+  t.push_back({'R',
+               "resolution",
+               {"X", "Y"},
+               kView,
+               "Set the size of the screen in pixels.",
                [](Options& o, Values v) {
                  const int x = parse_int(v[0], "-R", -1, kMax), y = parse_int(v[1], "-R", -1, kMax);
-                 if (x == -1 && y == -1) o.settings.screen.reset();
-                 else o.settings.screen = {x, y};
+                 if (x == -1 && y == -1)
+                   o.settings.screen.reset();
+                 else
+                   o.settings.screen = {x, y};
                }});
-  t.push_back({'W', "window", {"X0", "X1", "Y0", "Y1"}, kView,
+  t.push_back({'W',
+               "window",
+               {"X0", "X1", "Y0", "Y1"},
+               kView,
                "Render only this window of the screen, in pixels, ends included; rows count from the top.",
                [](Options& o, Values v) {
                  std::array<int, 4> w{};
                  for (std::size_t i = 0; i < 4; ++i) w[i] = parse_int(v[i], "-W", -kMax, kMax);
                  o.settings.window = w;
                }});
-  t.push_back({'X', "crop", {"L", "R", "B", "T"}, kView,
+  t.push_back({'X',
+               "crop",
+               {"L", "R", "B", "T"},
+               kView,
                "Render only this part of the window, as fractions of its width and height.",
                [](Options& o, Values v) {
                  std::array<double, 4> c{};
                  for (std::size_t i = 0; i < 4; ++i) c[i] = parse_real(v[i], "-X");
                  o.settings.crop = c;
                }});
-  t.push_back({'l', "left-eye", {}, kView, "Render the view of the left eye of a stereo pair.",
+  t.push_back({'l',
+               "left-eye",
+               {},
+               kView,
+               "Render the view of the left eye of a stereo pair.",
                [](Options& o, Values) { o.settings.eye = Eye::kLeft; }});
-  t.push_back({'r', "right-eye", {}, kView, "Render the view of the right eye of a stereo pair.",
+  t.push_back({'r',
+               "right-eye",
+               {},
+               kView,
+               "Render the view of the right eye of a stereo pair.",
                [](Options& o, Values) { o.settings.eye = Eye::kRight; }});
-  t.push_back({'E', "eye-separation", {"DISTANCE"}, kView, "Set the separation of the eyes.",
+  t.push_back({'E',
+               "eye-separation",
+               {"DISTANCE"},
+               kView,
+               "Set the separation of the eyes.",
                [](Options& o, Values v) { o.settings.eye_separation = parse_real(v[0], "-E"); }});
 
   // Sampling and shading
-  t.push_back({'S', "samples", {"N"}, kSampling, "Take at most N x N samples per pixel, N from 1 to 64.",
-               [](Options& o, Values v) {
-                 o.settings.samples = std::max(1, parse_int(v[0], "-S", -kMax, 64));
-               }});
-  t.push_back({'j', "toggle-jitter", {}, kSampling, "Toggle jittered sampling, which is otherwise on, whatever the scene says.",
+  t.push_back(
+      {'S',
+       "samples",
+       {"N"},
+       kSampling,
+       "Take at most N x N samples per pixel, N from 1 to 64.",
+       [](Options& o, Values v) { o.settings.samples = std::max(1, parse_int(v[0], "-S", -kMax, 64)); }});
+  t.push_back({'j',
+               "toggle-jitter",
+               {},
+               kSampling,
+               "Toggle jittered sampling, which is otherwise on, whatever the scene says.",
                [](Options& o, Values) { o.settings.jitter = !o.settings.jitter.value_or(true); }});
-  t.push_back({'T', "contrast", {"R", "G", "B"}, kSampling,
+  t.push_back({'T',
+               "contrast",
+               {"R", "G", "B"},
+               kSampling,
                "Set the contrast above which a pixel gets all its samples.",
                [](Options& o, Values v) {
                  o.settings.contrast = color(v, "-T");
                  if (o.settings.contrast->r == -1) o.settings.contrast.reset();
                }});
-  t.push_back({'g', "toggle-gauss", {}, kSampling, "Toggle the Gaussian pixel filter.",
-               [](Options& o, Values) {
-                 o.settings.filter = o.settings.filter == FilterKind::kGauss ? FilterKind::kBox : FilterKind::kGauss;
-               }});
-  t.push_back({'C', "cutoff", {"R", "G", "B"}, kSampling, "Set the contribution below which secondary rays are not traced.",
+  t.push_back(
+      {'g', "toggle-gauss", {}, kSampling, "Toggle the Gaussian pixel filter.", [](Options& o, Values) {
+         o.settings.filter = o.settings.filter == FilterKind::kGauss ? FilterKind::kBox : FilterKind::kGauss;
+       }});
+  t.push_back({'C',
+               "cutoff",
+               {"R", "G", "B"},
+               kSampling,
+               "Set the contribution below which secondary rays are not traced.",
                [](Options& o, Values v) {
                  o.settings.cutoff = color(v, "-C");
                  if (o.settings.cutoff->r == -1) o.settings.cutoff.reset();
                }});
-  t.push_back({'D', "max-depth", {"N"}, kSampling, "Set the largest number of reflections and refractions along a ray.",
+  t.push_back({'D',
+               "max-depth",
+               {"N"},
+               kSampling,
+               "Set the largest number of reflections and refractions along a ray.",
                [](Options& o, Values v) { o.settings.max_depth = parse_int(v[0], "-D", -kMax, 60'000); }});
-  t.push_back({'n', "toggle-shadows", {}, kSampling, "Toggle shadows, which are otherwise on.",
+  t.push_back({'n',
+               "toggle-shadows",
+               {},
+               kSampling,
+               "Toggle shadows, which are otherwise on.",
                [](Options& o, Values) { o.settings.no_shadows = !o.settings.no_shadows; }});
-  t.push_back({'o', "toggle-transparent-shadows", {}, kSampling,
+  t.push_back({'o',
+               "toggle-transparent-shadows",
+               {},
+               kSampling,
                "Toggle whether transparent objects let light through, in addition to what the scene says.",
                [](Options& o, Values) {
                  o.settings.toggle_transparent_shadows = !o.settings.toggle_transparent_shadows;
                }});
-  t.push_back({'p', "preview", {}, kSampling, "Preview: no shadows, depth 0, one jittered sample per pixel.",
+  t.push_back({'p',
+               "preview",
+               {},
+               kSampling,
+               "Preview: no shadows, depth 0, one jittered sample per pixel.",
                [](Options& o, Values) { preview(o); }});
-  t.push_back({'s', "toggle-shadow-cache", {}, kSampling,
+  t.push_back({'s',
+               "toggle-shadow-cache",
+               {},
+               kSampling,
                "Accepted for compatibility; caches never change the picture.",
                [](Options& o, Values) { o.shadow_cache = !o.shadow_cache; }});
-  t.push_back({0, "seed", {"N"}, kSampling, "Seed of all random numbers; 0 without it.",
-               [](Options& o, Values v) {
-                 const std::string& s = v[0];
-                 std::size_t used = 0;
-                 try {
-                   if (s.empty() || s[0] < '0' || s[0] > '9') throw std::invalid_argument(s);
-                   o.settings.seed = std::stoull(s, &used);
-                 } catch (const std::exception&) {
-                   used = 0;
-                 }
-                 if (used != s.size() || used == 0) throw UsageError("--seed: '" + s + "' is not a number from 0 to 2^64-1");
-               }});
+  t.push_back(
+      {0, "seed", {"N"}, kSampling, "Seed of all random numbers; 0 without it.", [](Options& o, Values v) {
+         const std::string& s = v[0];
+         std::size_t used = 0;
+         try {
+           if (s.empty() || s[0] < '0' || s[0] > '9') throw std::invalid_argument(s);
+           o.settings.seed = std::stoull(s, &used);
+         } catch (const std::exception&) {
+           used = 0;
+         }
+         if (used != s.size() || used == 0)
+           throw UsageError("--seed: '" + s + "' is not a number from 0 to 2^64-1");
+       }});
 
   // Animation
-  t.push_back({'A', "first-frame", {"N"}, kAnimation, "Number of the first frame to render.",
-               [](Options& o, Values v) { o.settings.first_frame = parse_int(v[0], "-A", -1'000'000'000, 1'000'000'000); }});
-  t.push_back({'N', "frames", {"N"}, kAnimation, "Number of frames to render.",
+  t.push_back({'A',
+               "first-frame",
+               {"N"},
+               kAnimation,
+               "Number of the first frame to render.",
                [](Options& o, Values v) {
+                 o.settings.first_frame = parse_int(v[0], "-A", -1'000'000'000, 1'000'000'000);
+               }});
+  t.push_back({'N', "frames", {"N"}, kAnimation, "Number of frames to render.", [](Options& o, Values v) {
                  const double n = parse_real(v[0], "-N");
                  if (!(n > -1e9 && n < 1e9)) throw UsageError("-N: '" + v[0] + "' is out of range");
                  o.settings.frames = static_cast<int>(n);
                }});
 
   // Picture
-  t.push_back({'O', "output", {"FILE"}, kPicture,
-               "Write the picture to FILE; '-' is standard output. Without it the scene's outfile, else standard output. "
-               "A name with %d or %04d holds the number of the frame.",
-               [](Options& o, Values v) { o.output = v[0]; }, {"FILE"}});
-  t.push_back({0, "format", {"FORMAT"}, kPicture,
-               "Format of the picture: png, png16, ppm, pfm, exr, rle or raw. Otherwise told by the suffix of the file; "
-               "png where there is none.",
+  t.push_back({'O',
+               "output",
+               {"FILE"},
+               kPicture,
+               "Write the picture to FILE; '-' is standard output. Without it the scene's outfile, else "
+               "standard output. A name with %d or %04d holds the number of the frame.",
+               [](Options& o, Values v) { o.output = v[0]; },
+               {"FILE"}});
+  t.push_back({0,
+               "format",
+               {"FORMAT"},
+               kPicture,
+               "Format of the picture: png, png16, ppm, pfm, exr, rle or raw. Otherwise told by the suffix "
+               "of the file; png where there is none.",
                [](Options& o, Values v) {
                  format_by_name(v[0]);  // complains at once
                  o.format = v[0];
                },
                {"png", "png16", "ppm", "pfm", "exr", "rle", "raw"}});
-  t.push_back({'G', "gamma", {"G"}, kPicture, "Display gamma: stored values are v^(1/G). 1 without it.",
+  t.push_back({'G',
+               "gamma",
+               {"G"},
+               kPicture,
+               "Display gamma: stored values are v^(1/G). 1 without it.",
                [](Options& o, Values v) { o.gamma = parse_real(v[0], "-G"); }});
-  t.push_back({0, "srgb", {}, kPicture, "Store values by the sRGB transfer function, and say so in the file.",
+  t.push_back({0,
+               "srgb",
+               {},
+               kPicture,
+               "Store values by the sRGB transfer function, and say so in the file.",
                [](Options& o, Values) { o.srgb = true; }});
-  t.push_back({'a', "toggle-alpha", {}, kPicture, "Toggle the alpha channel of RLE, PNG and EXR pictures.",
+  t.push_back({'a',
+               "toggle-alpha",
+               {},
+               kPicture,
+               "Toggle the alpha channel of RLE, PNG and EXR pictures.",
                [](Options& o, Values) { o.alpha = !o.alpha; }});
-  t.push_back({'e', "exponential", {}, kPicture, "Write an exponential RLE picture (red, green, blue, exponent).",
+  t.push_back({'e',
+               "exponential",
+               {},
+               kPicture,
+               "Write an exponential RLE picture (red, green, blue, exponent).",
                [](Options& o, Values) { o.exponential = true; }});
-  t.push_back({'m', "toggle-sample-map", {}, kPicture,
+  t.push_back({'m',
+               "toggle-sample-map",
+               {},
+               kPicture,
                "Toggle the sample map: alpha tells which pixels got all their samples.",
                [](Options& o, Values) { o.sample_map = !o.sample_map; }});
-  t.push_back({0, "layers", {"FILE"}, kPicture,
-               "Also write depth, normal, object and samples of each pixel: as layers of FILE if it is an EXR file, else "
-               "as FILE with the name of the layer before its suffix.",
-               [](Options& o, Values v) { o.layers = v[0]; }, {"FILE"}});
+  t.push_back({0,
+               "layers",
+               {"FILE"},
+               kPicture,
+               "Also write depth, normal, object and samples of each pixel: as layers of FILE if it is an "
+               "EXR file, else as FILE with the name of the layer before its suffix.",
+               [](Options& o, Values v) { o.layers = v[0]; },
+               {"FILE"}});
 
   // Run
-  t.push_back({0, "threads", {"N"}, kRun, "Number of threads; 0 (the default) is what the process may use.",
+  t.push_back({0,
+               "threads",
+               {"N"},
+               kRun,
+               "Number of threads; 0 (the default) is what the process may use.",
                [](Options& o, Values v) { o.threads = parse_int(v[0], "--threads", 0, 4096); }});
-  t.push_back({0, "intersector", {"NAME"}, kRun,
-               "How rays find objects: hierarchy (the default) or brute (every object for every ray; the oracle). The "
-               "picture is the same.",
+  t.push_back({0,
+               "intersector",
+               {"NAME"},
+               kRun,
+               "How rays find objects: hierarchy (the default) or brute (every object for every ray; the "
+               "oracle). The picture is the same.",
                [](Options& o, Values v) {
-                 if (v[0] == "brute") o.intersector = IntersectorChoice::kBruteForce;
-                 else if (v[0] == "hierarchy") o.intersector = IntersectorChoice::kHierarchy;
-                 else throw UsageError("--intersector: '" + v[0] + "' is neither hierarchy nor brute");
+                 if (v[0] == "brute")
+                   o.intersector = IntersectorChoice::kBruteForce;
+                 else if (v[0] == "hierarchy")
+                   o.intersector = IntersectorChoice::kHierarchy;
+                 else
+                   throw UsageError("--intersector: '" + v[0] + "' is neither hierarchy nor brute");
                },
                {"hierarchy", "brute"}});
-  t.push_back({0, "block", {"N"}, kRun, "Side of the blocks that threads render, in pixels. The picture is the same.",
+  t.push_back({0,
+               "block",
+               {"N"},
+               kRun,
+               "Side of the blocks that threads render, in pixels. The picture is the same.",
                [](Options& o, Values v) { o.block = parse_int(v[0], "--block", 1, 65'536); }});
-  t.push_back({0, "memory", {"SIZE"}, kRun,
-               "Refuse to start where more than SIZE bytes (suffix K, M, G) would be needed. Default: what the machine or "
-               "the job has available.",
+  t.push_back({0,
+               "memory",
+               {"SIZE"},
+               kRun,
+               "Refuse to start where more than SIZE bytes (suffix K, M, G) would be needed. Default: what "
+               "the machine or the job has available.",
                [](Options& o, Values v) { o.memory_limit = parse_bytes(v[0], "--memory"); }});
-  t.push_back({'c', "continue", {}, kRun,
-               "Continue an interrupted rendering. This version keeps no journal: it says so and renders from the start.",
+  t.push_back({'c',
+               "continue",
+               {},
+               kRun,
+               "Continue an interrupted rendering. This version keeps no journal: it says so and renders "
+               "from the start.",
                [](Options& o, Values) { o.resume = true; }});
 
   // Reports
-  t.push_back({'q', "quiet", {}, kReport, "Print nothing but warnings and errors.",
-               [](Options& o, Values) { o.quiet = true; }});
-  t.push_back({'v', "verbose", {}, kReport, "Print settings, objects and full statistics.",
-               [](Options& o, Values) { o.verbose = true; }});
-  t.push_back({'V', "report-file", {"FILE"}, kReport, "Like -v, and write the report to FILE.",
+  t.push_back({'q', "quiet", {}, kReport, "Print nothing but warnings and errors.", [](Options& o, Values) {
+                 o.quiet = true;
+               }});
+  t.push_back(
+      {'v', "verbose", {}, kReport, "Print settings, objects and full statistics.", [](Options& o, Values) {
+         o.verbose = true;
+       }});
+  t.push_back({'V',
+               "report-file",
+               {"FILE"},
+               kReport,
+               "Like -v, and write the report to FILE.",
                [](Options& o, Values v) {
-                 if (v[0].starts_with("-")) throw UsageError("-V: needs the name of a file, not '" + v[0] + "'");
+                 if (v[0].starts_with("-"))
+                   throw UsageError("-V: needs the name of a file, not '" + v[0] + "'");
                  o.verbose = true;
                  o.report_file = v[0];
                },
                {"FILE"}});
-  t.push_back({'F', "report-frequency", {"N"}, kReport, "Print a plain progress line every N rows.",
-               [](Options& o, Values v) { o.report_frequency = std::max(1, std::abs(parse_int(v[0], "-F", -kMax, kMax))); }});
-  t.push_back({0, "stats", {"FILE"}, kReport, "Write all statistics to FILE as JSON.",
-               [](Options& o, Values v) { o.stats_file = v[0]; }, {"FILE"}});
-  t.push_back({0, "cost-map", {"FILE"}, kReport,
-               "Write intersection tests and microseconds per pixel as a float picture (FILE, .pfm or .exr), and a PNG in "
-               "false colours beside it.",
-               [](Options& o, Values v) { o.cost_map = v[0]; }, {"FILE"}});
-  t.push_back({0, "explain", {"X", "Y"}, kReport,
-               "Print the ray tree of one pixel of the screen: every hit, light, weight and colour. Renders nothing else.",
+  t.push_back({'F',
+               "report-frequency",
+               {"N"},
+               kReport,
+               "Print a plain progress line every N rows.",
+               [](Options& o, Values v) {
+                 o.report_frequency = std::max(1, std::abs(parse_int(v[0], "-F", -kMax, kMax)));
+               }});
+  t.push_back({0,
+               "stats",
+               {"FILE"},
+               kReport,
+               "Write all statistics to FILE as JSON.",
+               [](Options& o, Values v) { o.stats_file = v[0]; },
+               {"FILE"}});
+  t.push_back({0,
+               "cost-map",
+               {"FILE"},
+               kReport,
+               "Write intersection tests and microseconds per pixel as a float picture (FILE, .pfm or .exr), "
+               "and a PNG in false colours beside it.",
+               [](Options& o, Values v) { o.cost_map = v[0]; },
+               {"FILE"}});
+  t.push_back({0,
+               "explain",
+               {"X", "Y"},
+               kReport,
+               "Print the ray tree of one pixel of the screen: every hit, light, weight and colour. Renders "
+               "nothing else.",
                [](Options& o, Values v) {
                  o.action = Action::kExplain;
                  o.explain_x = parse_int(v[0], "--explain", 0, kMax);
                  o.explain_y = parse_int(v[1], "--explain", 0, kMax);
                }});
-  t.push_back({'h', "help", {}, kReport, "Print this help and exit.",
-               [](Options& o, Values) { o.action = Action::kHelp; }});
-  t.push_back({0, "version", {}, kReport, "Print the version and exit.",
-               [](Options& o, Values) { o.action = Action::kVersion; }});
-  t.push_back({0, "man-options", {}, kReport, "Print the OPTIONS section of the manual page and exit.",
+  t.push_back({'h', "help", {}, kReport, "Print this help and exit.", [](Options& o, Values) {
+                 o.action = Action::kHelp;
+               }});
+  t.push_back({0, "version", {}, kReport, "Print the version and exit.", [](Options& o, Values) {
+                 o.action = Action::kVersion;
+               }});
+  t.push_back({0,
+               "man-options",
+               {},
+               kReport,
+               "Print the OPTIONS section of the manual page and exit.",
                [](Options& o, Values) { o.action = Action::kManOptions; }});
-  t.push_back({0, "bash-completion", {}, kReport, "Print a completion script for bash and exit.",
+  t.push_back({0,
+               "bash-completion",
+               {},
+               kReport,
+               "Print a completion script for bash and exit.",
                [](Options& o, Values) { o.action = Action::kCompletion; }});
   return t;
 }

@@ -53,9 +53,12 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
-    if (c == '\\') out += "\\e";
-    else if (c == '-') out += "\\-";
-    else out += c;
+    if (c == '\\')
+      out += "\\e";
+    else if (c == '-')
+      out += "\\-";
+    else
+      out += c;
   }
   return out;
 }
@@ -78,7 +81,8 @@ Options parse_options(std::span<const std::string> arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& argument = arguments[i];
     if (only_files || argument.empty() || argument[0] != '-') {
-      if (have_input) throw UsageError(fmt::format("more than one scene: '{}' and '{}'", options.input, argument));
+      if (have_input)
+        throw UsageError(fmt::format("more than one scene: '{}' and '{}'", options.input, argument));
       options.input = argument;
       have_input = true;
       continue;
@@ -96,13 +100,15 @@ Options parse_options(std::span<const std::string> arguments) {
     } else if (argument.size() >= 2) {
       spec = find_letter(argument[1]);
       if (spec && argument.size() > 2) {
-        throw UsageError(fmt::format("'{}': letters are not joined; values follow as words of their own", argument));
+        throw UsageError(
+            fmt::format("'{}': letters are not joined; values follow as words of their own", argument));
       }
     }
     if (!spec) throw UsageError(fmt::format("unknown option '{}'", argument));
     std::vector<std::string> values;
     if (attached) {
-      if (spec->values.size() != 1) throw UsageError(fmt::format("'{}' takes {} values", argument, spec->values.size()));
+      if (spec->values.size() != 1)
+        throw UsageError(fmt::format("'{}' takes {} values", argument, spec->values.size()));
       values.push_back(*attached);
     } else {
       if (arguments.size() - i - 1 < spec->values.size()) {
@@ -128,8 +134,9 @@ std::string help_text() {
   for (const auto& [group, members] : grouped()) {
     out += fmt::format("\n{}:\n", group);
     for (const OptionSpec* spec : members) {
-      const std::string head = fmt::format("  {}--{}{}", spec->letter ? fmt::format("-{}, ", spec->letter) : "    ",
-                                           spec->name, placeholders(*spec));
+      const std::string head =
+          fmt::format("  {}--{}{}", spec->letter ? fmt::format("-{}, ", spec->letter) : "    ", spec->name,
+                      placeholders(*spec));
       const std::vector<std::string> lines = wrapped(spec->help, kWidth - kIndent);
       if (head.size() + 2 > kIndent) {
         out += fmt::format("{}\n{:{}}{}\n", head, "", kIndent, lines[0]);
@@ -139,8 +146,10 @@ std::string help_text() {
       for (std::size_t i = 1; i < lines.size(); ++i) out += fmt::format("{:{}}{}\n", "", kIndent, lines[i]);
     }
   }
-  out += "\nExit status: 0 picture complete, 1 error in the scene or while rendering, 2 wrong usage, 3 stopped before the\n"
-         "end (the partial picture is kept as NAME.partial.EXT). See rayshade(1) and rayshade(5).\n";
+  out +=
+      "\nExit status: 0 picture complete, 1 error in the scene or while rendering, 2 wrong usage, 3 stopped "
+      "before the\n"
+      "end (the partial picture is kept as NAME.partial.EXT). See rayshade(1) and rayshade(5).\n";
   return out;
 }
 
@@ -227,11 +236,16 @@ std::uint64_t parse_bytes(const std::string& text, const std::string& option) {
   const auto [end, error] = std::from_chars(text.data(), last, value);
   double unit = 1;
   const std::string suffix(end, last);
-  if (suffix == "K" || suffix == "k") unit = 1024.0;
-  else if (suffix == "M") unit = 1024.0 * 1024;
-  else if (suffix == "G") unit = 1024.0 * 1024 * 1024;
-  else if (suffix == "T") unit = 1024.0 * 1024 * 1024 * 1024;
-  else if (!suffix.empty()) value = -1;
+  if (suffix == "K" || suffix == "k")
+    unit = 1024.0;
+  else if (suffix == "M")
+    unit = 1024.0 * 1024;
+  else if (suffix == "G")
+    unit = 1024.0 * 1024 * 1024;
+  else if (suffix == "T")
+    unit = 1024.0 * 1024 * 1024 * 1024;
+  else if (!suffix.empty())
+    value = -1;
   if (error != std::errc{} || !(value > 0) || value * unit > 9e18) {
     throw UsageError(fmt::format("{}: '{}' is not a size such as 800M or 4G", option, text));
   }

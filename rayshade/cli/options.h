@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The options of the program: one table, from which come parsing, --help, the OPTIONS section of the manual page and
-// the completion of the shell. Every letter of Rayshade 4.0 keeps its meaning (language.md 6).
+// The options of the program: one table, from which come parsing, --help, the OPTIONS section of the manual
+// page and the completion of the shell. Every letter of Rayshade 4.0 keeps its meaning (language.md 6).
 #pragma once
 
 #include <cstdint>
@@ -15,30 +15,39 @@
 
 namespace rayshade {
 
-enum class Action : std::uint8_t { kRender, kCheck, kDumpScene, kExplain, kHelp, kVersion, kManOptions, kCompletion };
+enum class Action : std::uint8_t {
+  kRender,
+  kCheck,
+  kDumpScene,
+  kExplain,
+  kHelp,
+  kVersion,
+  kManOptions,
+  kCompletion
+};
 enum class Preprocess : std::uint8_t { kAuto, kAlways, kNever };
 enum class IntersectorChoice : std::uint8_t { kHierarchy, kBruteForce };
 
 struct Options {
   Action action = Action::kRender;
-  std::string input;                        ///< empty: standard input
+  std::string input;  ///< empty: standard input
   SettingsOverrides settings;
-  std::optional<std::string> output;        ///< "-": standard output
+  std::optional<std::string> output;  ///< "-": standard output
   std::optional<std::string> format;
   double gamma = 1;
   bool srgb = false;
-  bool alpha = true;                        ///< -a toggles
+  bool alpha = true;  ///< -a toggles
   bool exponential = false;
   bool sample_map = false;
-  bool resume = false;                      ///< -c
-  bool shadow_cache = true;                 ///< -s; accepted, changes nothing
+  bool resume = false;       ///< -c
+  bool shadow_cache = true;  ///< -s; accepted, changes nothing
   Preprocess preprocess = Preprocess::kAuto;
   std::optional<std::string> preprocessor_arguments;
   bool quiet = false, verbose = false;
   std::optional<int> report_frequency;
   std::optional<std::string> report_file;
-  int threads = 0;                          ///< 0: what the process may use
-  int block = 0;                            ///< side of a block; 0: chosen
+  int threads = 0;  ///< 0: what the process may use
+  int block = 0;    ///< side of a block; 0: chosen
   IntersectorChoice intersector = IntersectorChoice::kHierarchy;
   std::optional<std::string> stats_file, cost_map, layers;
   std::optional<std::uint64_t> memory_limit;  ///< bytes; unset: what the machine has
@@ -52,19 +61,19 @@ struct UsageError : std::runtime_error {
 
 /// One row of the table.
 struct OptionSpec {
-  char letter;                              ///< 0: has no letter
-  const char* name;                         ///< long name without dashes
-  std::vector<const char*> values;          ///< placeholders, one per value
-  const char* group;                        ///< heading in --help and the manual
-  const char* help;                         ///< one sentence or two, plain text
+  char letter;                      ///< 0: has no letter
+  const char* name;                 ///< long name without dashes
+  std::vector<const char*> values;  ///< placeholders, one per value
+  const char* group;                ///< heading in --help and the manual
+  const char* help;                 ///< one sentence or two, plain text
   std::function<void(Options&, std::span<const std::string>)> apply;
-  std::vector<const char*> choices = {};    ///< completion of the first value; "FILE" names stand for files
+  std::vector<const char*> choices = {};  ///< completion of the first value; "FILE" names stand for files
 };
 
 const std::vector<OptionSpec>& option_table();
 
-/// Reads the command line left to right. Throws UsageError. An action that ends the run at once (--help, --version)
-/// stops the reading.
+/// Reads the command line left to right. Throws UsageError. An action that ends the run at once (--help,
+/// --version) stops the reading.
 Options parse_options(std::span<const std::string> arguments);
 
 std::string usage_line();

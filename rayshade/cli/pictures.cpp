@@ -27,8 +27,10 @@ std::string with_infix(const std::string& path, const std::string& infix) {
 PictureOutput::PictureOutput(const Options& options, const RenderSettings& settings, std::string name)
     : options_(options), settings_(settings), name_(std::move(name)) {
   std::optional<FileFormat> chosen;
-  if (options.format) chosen = format_by_name(*options.format);
-  else if (name_ != "-") chosen = format_by_suffix(name_);
+  if (options.format)
+    chosen = format_by_name(*options.format);
+  else if (name_ != "-")
+    chosen = format_by_suffix(name_);
   if (options.exponential) {
     if (chosen && !is_rle(*chosen)) {
       throw UsageError(fmt::format("-e writes an RLE picture, not {}", format_name(*chosen)));
@@ -42,14 +44,15 @@ PictureOutput::PictureOutput(const Options& options, const RenderSettings& setti
   numbered_ = name_ != "-" && is_numbered(name_);
   appended_ = settings.frames > 1 && !numbered_;
   if (appended_ && !can_append(format_)) {
-    throw UsageError(fmt::format("{} frames do not fit into one {} file: put the number of the frame into the name, as in "
-                                 "-O out.%04d.{}",
-                                 settings.frames, format_name(format_),
-                                 format_ == FileFormat::kExr ? "exr" : "png"));
+    throw UsageError(
+        fmt::format("{} frames do not fit into one {} file: put the number of the frame into the name, as in "
+                    "-O out.%04d.{}",
+                    settings.frames, format_name(format_), format_ == FileFormat::kExr ? "exr" : "png"));
   }
   for (const auto& extra : {options.layers, options.cost_map}) {
     if (extra && settings.frames > 1 && !is_numbered(*extra)) {
-      throw UsageError(fmt::format("'{}': with several frames the name needs the number of the frame, as in %04d", *extra));
+      throw UsageError(fmt::format(
+          "'{}': with several frames the name needs the number of the frame, as in %04d", *extra));
     }
   }
 }
@@ -75,7 +78,8 @@ PictureInfo PictureOutput::info(int frame) const {
   out.alpha = alpha_;
   out.tag_encoding = options_.srgb || options_.gamma != 1;
   out.provenance = tags_;
-  if (settings_.frames > 1 || settings_.first_frame != 0) out.provenance.emplace_back("Frame", fmt::format("{}", frame));
+  if (settings_.frames > 1 || settings_.first_frame != 0)
+    out.provenance.emplace_back("Frame", fmt::format("{}", frame));
   return out;
 }
 
@@ -116,20 +120,25 @@ void PictureOutput::write_layers(const FrameBuffer& picture, int frame) {
   if (!options_.layers) return;
   const std::string name = file_name(*options_.layers, frame);
   if (ends_with_exr(name)) {
-    // One file with the colours and all layers; colours need floats, so it is written from a float picture only.
+    // One file with the colours and all layers; colours need floats, so it is written from a float picture
+    // only.
     if (picture.storage() == PixelStorage::kFloat) {
       OutputFile file(name);
       write_picture(picture, FileFormat::kExr, info(frame), file);
       file.commit();
       return;
     }
-    throw UsageError("--layers to an EXR file needs an EXR or PFM picture: use -O with .exr, or --layers NAME.pfm or .png");
+    throw UsageError(
+        "--layers to an EXR file needs an EXR or PFM picture: use -O with .exr, or --layers NAME.pfm or "
+        ".png");
   }
   const bool png = format_by_suffix(name) == FileFormat::kPng8;
   for (const char* layer : kDataLayers) {
     OutputFile file(with_infix(name, layer));
-    if (png) write_layer_png(picture, picture.layer_index(layer), {}, file);
-    else write_layer_pfm(picture, picture.layer_index(layer), file);
+    if (png)
+      write_layer_png(picture, picture.layer_index(layer), {}, file);
+    else
+      write_layer_pfm(picture, picture.layer_index(layer), file);
     file.commit();
   }
 }
@@ -138,7 +147,8 @@ void PictureOutput::write_cost_map(const FrameBuffer& picture, int frame) {
   if (!options_.cost_map) return;
   const std::string name = file_name(*options_.cost_map, frame);
   const std::size_t dot = name.rfind('.');
-  const std::string stem = dot == std::string::npos || name.find('/', dot) != std::string::npos ? name : name.substr(0, dot);
+  const std::string stem =
+      dot == std::string::npos || name.find('/', dot) != std::string::npos ? name : name.substr(0, dot);
   for (const char* layer : kCostLayers) {
     OutputFile numbers(fmt::format("{}.{}.pfm", stem, layer));
     write_layer_pfm(picture, picture.layer_index(layer), numbers);

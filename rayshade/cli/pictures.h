@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where the frames of a run go: one file, numbered files, or frames one after the other; beside it layers, cost maps
-// and partial pictures.
+// Where the frames of a run go: one file, numbered files, or frames one after the other; beside it layers,
+// cost maps and partial pictures.
 #pragma once
 
 #include <memory>
@@ -18,8 +18,8 @@ namespace rayshade {
 
 class PictureOutput {
  public:
-  /// `name`: "-" is standard output. Throws UsageError for combinations that cannot be (several frames in one PNG,
-  /// options of one format with another), FormatError for unknown formats.
+  /// `name`: "-" is standard output. Throws UsageError for combinations that cannot be (several frames in one
+  /// PNG, options of one format with another), FormatError for unknown formats.
   PictureOutput(const Options& options, const RenderSettings& settings, std::string name);
 
   FrameBufferOptions frame_buffer_options(std::uint64_t memory_limit) const;

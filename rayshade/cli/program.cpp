@@ -28,7 +28,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 void complain(const std::string& text) { fmt::print(stderr, "rayshade: {}\n", text); }
 
@@ -42,7 +44,9 @@ using File = std::unique_ptr<std::FILE, CloseFile>;
 void note_resources(RunSummary& run, Clock::time_point start) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   run.total_cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   run.wall_seconds = seconds_since(start);
   run.peak_memory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
@@ -72,13 +76,16 @@ class Run {
     Renderer renderer(scene_, settings_, provider_, render_options());
     if (options_.action == Action::kExplain) return explain(renderer);
     if (!options_.quiet) {
-      fmt::print(stderr, "{}: {} primitive{}, {} error{}, {} warning{}\n", scene_name(), renderer.compiled().counts.primitives,
-                 renderer.compiled().counts.primitives == 1 ? "" : "s", 0, "s", warnings_, warnings_ == 1 ? "" : "s");
+      fmt::print(stderr, "{}: {} primitive{}, {} error{}, {} warning{}\n", scene_name(),
+                 renderer.compiled().counts.primitives, renderer.compiled().counts.primitives == 1 ? "" : "s",
+                 0, "s", warnings_, warnings_ == 1 ? "" : "s");
     }
     return kComplete;
   }
 
-  std::string describe(const Location& where) const { return where.line > 0 ? scene_.describe(where) + ": " : ""; }
+  std::string describe(const Location& where) const {
+    return where.line > 0 ? scene_.describe(where) + ": " : "";
+  }
 
  private:
   std::string scene_name() const { return options_.input.empty() ? "-" : options_.input; }
@@ -88,7 +95,9 @@ class Run {
     report_.reset(stderr);
     if (!options_.report_file) return;
     std::FILE* file = std::fopen(options_.report_file->c_str(), "w");
-    if (!file) throw UsageError(fmt::format("cannot open report file '{}': {}", *options_.report_file, std::strerror(errno)));
+    if (!file)
+      throw UsageError(
+          fmt::format("cannot open report file '{}': {}", *options_.report_file, std::strerror(errno)));
     report_.reset(file);
   }
 
@@ -101,7 +110,8 @@ class Run {
     if (!options_.report_file && s.report_file) {
       std::FILE* file = std::fopen(s.report_file->c_str(), "w");
       if (!file) {
-        throw RenderError(fmt::format("cannot open report file '{}': {}", *s.report_file, std::strerror(errno)), {});
+        throw RenderError(
+            fmt::format("cannot open report file '{}': {}", *s.report_file, std::strerror(errno)), {});
       }
       report_.reset(file);
     }
@@ -145,8 +155,9 @@ class Run {
 
   int explain(Renderer& renderer) {
     if (options_.explain_x >= settings_.width || options_.explain_y >= settings_.height) {
-      throw UsageError(fmt::format("--explain: pixel {} {} is not on the screen of {} x {}", options_.explain_x,
-                                   options_.explain_y, settings_.width, settings_.height));
+      throw UsageError(fmt::format("--explain: pixel {} {} is not on the screen of {} x {}",
+                                   options_.explain_x, options_.explain_y, settings_.width,
+                                   settings_.height));
     }
     write_text(options_.output.value_or("-"),
                renderer.explain(settings_.first_frame, options_.explain_x, options_.explain_y));
@@ -163,12 +174,12 @@ class Run {
                  static_cast<double>(need) / 1e6, static_cast<double>(limit) / 1e6);
     }
     if (need > limit) {
-      throw RenderError(
-          fmt::format("a picture of {} x {} pixels needs {:.1f} GB of memory, and {:.1f} GB are available: render it in parts "
-                      "with -W, or raise --memory",
-                      settings_.window_width(), settings_.window_height(), static_cast<double>(need) / 1e9,
-                      static_cast<double>(limit) / 1e9),
-          scene_.settings.screen_location);
+      throw RenderError(fmt::format("a picture of {} x {} pixels needs {:.1f} GB of memory, and {:.1f} GB "
+                                    "are available: render it in parts "
+                                    "with -W, or raise --memory",
+                                    settings_.window_width(), settings_.window_height(),
+                                    static_cast<double>(need) / 1e9, static_cast<double>(limit) / 1e9),
+                        scene_.settings.screen_location);
     }
     return limit;
   }
@@ -207,7 +218,8 @@ class Run {
     for (int i = 0; i < settings_.frames && complete; ++i) {
       const int frame = settings_.first_frame + i;
       if (i > 0) picture.clear();
-      progress.start(settings_.frames > 1 ? fmt::format("frame {} ({} of {})", frame, i + 1, settings_.frames) : "rendering");
+      progress.start(settings_.frames > 1 ? fmt::format("frame {} ({} of {})", frame, i + 1, settings_.frames)
+                                          : "rendering");
       complete = renderer.render_frame(frame, picture, requests.stop(), [&](const FrameProgress& now) {
         progress.update(now);
         if (requests.take_progress()) progress.print_now(now);
@@ -266,11 +278,20 @@ int run_program(const std::vector<std::string>& arguments) {
   try {
     const Options options = parse_options(arguments);
     switch (options.action) {
-      case Action::kHelp: fmt::print("{}", help_text()); return kComplete;
-      case Action::kVersion: fmt::print("rayshade {}\n", RAYSHADE_VERSION); return kComplete;
-      case Action::kManOptions: fmt::print("{}", man_options()); return kComplete;
-      case Action::kCompletion: fmt::print("{}", bash_completion()); return kComplete;
-      default: break;
+      case Action::kHelp:
+        fmt::print("{}", help_text());
+        return kComplete;
+      case Action::kVersion:
+        fmt::print("rayshade {}\n", RAYSHADE_VERSION);
+        return kComplete;
+      case Action::kManOptions:
+        fmt::print("{}", man_options());
+        return kComplete;
+      case Action::kCompletion:
+        fmt::print("{}", bash_completion());
+        return kComplete;
+      default:
+        break;
     }
     Run run(options);
     return guarded(run);

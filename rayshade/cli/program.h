@@ -9,14 +9,14 @@ namespace rayshade {
 
 /// Exit codes (rayshade(1)).
 enum ExitCode : int {
-  kComplete = 0,   ///< picture complete
-  kFailed = 1,     ///< error in the scene or while rendering
-  kUsage = 2,      ///< wrong usage
-  kStopped = 3,    ///< stopped before the end
+  kComplete = 0,  ///< picture complete
+  kFailed = 1,    ///< error in the scene or while rendering
+  kUsage = 2,     ///< wrong usage
+  kStopped = 3,   ///< stopped before the end
 };
 
-/// Runs with the arguments after the program's name. Talks on standard error, writes pictures and requested data to
-/// standard output only where asked to; never throws.
+/// Runs with the arguments after the program's name. Talks on standard error, writes pictures and requested
+/// data to standard output only where asked to; never throws.
 int run_program(const std::vector<std::string>& arguments);
 
 }  // namespace rayshade

@@ -28,11 +28,14 @@ void Progress::start(const std::string& what) {
 
 std::string Progress::line(const FrameProgress& now) const {
   const double elapsed = seconds_between(started_, Clock::now());
-  const double share = now.pixels > 0 ? static_cast<double>(now.pixels_done) / static_cast<double>(now.pixels) : 1;
+  const double share =
+      now.pixels > 0 ? static_cast<double>(now.pixels_done) / static_cast<double>(now.pixels) : 1;
   std::string out = fmt::format("{}: {:3.0f} %, {}", what_, 100 * share, duration_text(elapsed));
-  if (share > 0) out += fmt::format(", {:.3g} kpixel/s", static_cast<double>(now.pixels_done) / elapsed / 1000);
+  if (share > 0)
+    out += fmt::format(", {:.3g} kpixel/s", static_cast<double>(now.pixels_done) / elapsed / 1000);
   // A guess from the first blocks would be a lie.
-  if (share > 0.02 && share < 1) out += fmt::format(", {} left", duration_text(elapsed * (1 - share) / share));
+  if (share > 0.02 && share < 1)
+    out += fmt::format(", {} left", duration_text(elapsed * (1 - share) / share));
   return out;
 }
 
@@ -62,7 +65,8 @@ void Progress::update(const FrameProgress& now) {
   }
   const int tenth = now.pixels > 0 ? static_cast<int>(10 * now.pixels_done / now.pixels) : 10;
   const bool short_job = seconds_between(started_, time) < 2;
-  if ((tenth > last_tenth_ && !short_job && seconds_between(last_, time) > 1) || seconds_between(last_, time) >= 60) {
+  if ((tenth > last_tenth_ && !short_job && seconds_between(last_, time) > 1) ||
+      seconds_between(last_, time) >= 60) {
     last_tenth_ = tenth;
     last_ = time;
     print_now(now);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Progress for people and for logs: on a terminal one live line; elsewhere sparse plain lines without carriage
-// returns. Everything goes to the report stream, never to standard output.
+// Progress for people and for logs: on a terminal one live line; elsewhere sparse plain lines without
+// carriage returns. Everything goes to the report stream, never to standard output.
 #pragma once
 
 #include <chrono>
@@ -17,10 +17,10 @@ std::string duration_text(double seconds);
 class Progress {
  public:
   struct Style {
-    bool silent = false;              ///< -q
-    bool live = false;                ///< the stream is a terminal
-    int every_rows = 0;               ///< -F: a plain line every so many rows; 0: by time and percent
-    int first_row = 0;                ///< screen number of the window's first row
+    bool silent = false;  ///< -q
+    bool live = false;    ///< the stream is a terminal
+    int every_rows = 0;   ///< -F: a plain line every so many rows; 0: by time and percent
+    int first_row = 0;    ///< screen number of the window's first row
   };
   Progress(std::FILE* out, Style style) : out_(out), style_(style) {}
 

@@ -8,15 +8,17 @@
 namespace rayshade {
 namespace {
 
-constexpr const char* kLeafNames[kLeafKinds] = {"Plane", "Sphere", "Box", "Disc", "Cylinder", "Cone", "Torus", "Triangle",
-                                                "Smooth triangle", "Uv triangle", "Polygon", "Blob", "Heightfield",
-                                                "CSG object", "Instance"};
+constexpr const char* kLeafNames[kLeafKinds] = {
+    "Plane",           "Sphere",      "Box",     "Disc", "Cylinder",    "Cone",       "Torus",   "Triangle",
+    "Smooth triangle", "Uv triangle", "Polygon", "Blob", "Heightfield", "CSG object", "Instance"};
 
 double percent(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-double per(double seconds, std::uint64_t count) { return count == 0 ? 0 : seconds / static_cast<double>(count); }
+double per(double seconds, std::uint64_t count) {
+  return count == 0 ? 0 : seconds / static_cast<double>(count);
+}
 
 /// Skipped work, as (name, count, explanation).
 struct Skipped {
@@ -35,9 +37,9 @@ std::vector<Skipped> skipped_work(const RenderStatistics& s) {
 }
 
 std::vector<std::pair<const char*, bool>> unused_features(const RenderStatistics& s) {
-  return {{"motion", s.without_motion},         {"lens", s.without_lens},
-          {"csg", s.without_csg},               {"transparency", s.without_transparency},
-          {"textures", s.without_textures},     {"atmosphere", s.without_atmosphere}};
+  return {{"motion", s.without_motion},     {"lens", s.without_lens},
+          {"csg", s.without_csg},           {"transparency", s.without_transparency},
+          {"textures", s.without_textures}, {"atmosphere", s.without_atmosphere}};
 }
 
 }  // namespace
@@ -48,8 +50,8 @@ std::string settings_text(const RenderSettings& r, const Renderer& renderer) {
   out += "list \"World\":\n";
   const Bounds3& b = scene.groups[0].bounds;
   if (!b.empty() && scene.groups[0].unbounded == 0) {
-    out += fmt::format("\tX: {:f} to {:f}\n\tY: {:f} to {:f}\n\tZ: {:f} to {:f}\n", b.lo.x, b.hi.x, b.lo.y, b.hi.y, b.lo.z,
-                       b.hi.z);
+    out += fmt::format("\tX: {:f} to {:f}\n\tY: {:f} to {:f}\n\tZ: {:f} to {:f}\n", b.lo.x, b.hi.x, b.lo.y,
+                       b.hi.y, b.lo.z, b.hi.z);
   }
   out += fmt::format("\t{} primitive{}\n", scene.counts.primitives, scene.counts.primitives == 1 ? " " : "s");
   if (r.frames > 1) {
@@ -59,16 +61,19 @@ std::string settings_text(const RenderSettings& r, const Renderer& renderer) {
   }
   out += fmt::format("Screen resolution: {} x {}\n", r.width, r.height);
   out += fmt::format("Image window: ({} - {}), ({} - {})\n", r.min_x, r.max_x, r.min_y, r.max_y);
-  out += fmt::format("{}{} sample{} per pixel at most, {} filter of width {:g}\n", r.jitter ? "Jittered sampling, " : "",
-                     r.samples * r.samples, r.samples == 1 ? "" : "s", r.filter == FilterKind::kBox ? "box" : "Gaussian",
-                     r.filter_width);
-  out += fmt::format("Maximum contrast: {:g} red, {:g} green, {:g} blue\n", r.contrast.r, r.contrast.g, r.contrast.b);
-  out += fmt::format("Maximum ray depth: {}. Cutoff thresholds: {:g} {:g} {:g}\n", r.max_depth, r.cutoff.r, r.cutoff.g,
-                     r.cutoff.b);
+  out += fmt::format("{}{} sample{} per pixel at most, {} filter of width {:g}\n",
+                     r.jitter ? "Jittered sampling, " : "", r.samples * r.samples, r.samples == 1 ? "" : "s",
+                     r.filter == FilterKind::kBox ? "box" : "Gaussian", r.filter_width);
+  out += fmt::format("Maximum contrast: {:g} red, {:g} green, {:g} blue\n", r.contrast.r, r.contrast.g,
+                     r.contrast.b);
+  out += fmt::format("Maximum ray depth: {}. Cutoff thresholds: {:g} {:g} {:g}\n", r.max_depth, r.cutoff.r,
+                     r.cutoff.g, r.cutoff.b);
   if (r.stereo == Eye::kLeft) out += "Rendering the left eye's view\n";
   if (r.stereo == Eye::kRight) out += "Rendering the right eye's view\n";
-  if (!r.shadows) out += "No shadows are rendered.\n";
-  else if (r.transparent_shadows) out += "Object opacity affects depth of shadowing.\n";
+  if (!r.shadows)
+    out += "No shadows are rendered.\n";
+  else if (r.transparent_shadows)
+    out += "Object opacity affects depth of shadowing.\n";
   if (r.frames > 1) out += fmt::format("Rendering {} frames.\n", r.frames);
   return out;
 }
@@ -76,7 +81,9 @@ std::string settings_text(const RenderSettings& r, const Renderer& renderer) {
 std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bool verbose) {
   const ShadingCounts& c = s.shading;
   std::string out;
-  const auto row = [&](const char* label, const std::string& value) { out += fmt::format("{:<36}{}\n", label, value); };
+  const auto row = [&](const char* label, const std::string& value) {
+    out += fmt::format("{:<36}{}\n", label, value);
+  };
   const auto count = [&](const char* label, std::uint64_t n) { row(label, fmt::format("{}", n)); };
   count("Eye rays:", c.eye_rays);
   count("Shadow rays:", c.shadow_rays);
@@ -86,7 +93,8 @@ std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bo
   const std::uint64_t hits = c.shaded_hits + c.shadow_hits;
   row("Intersecting rays:", fmt::format("{} ({:.2f}%)", hits, percent(hits, c.total_rays())));
   if (c.shadow_rays > 0) {
-    row("Total shadow hits:", fmt::format("{} ({:.2f}%)", c.shadow_hits, percent(c.shadow_hits, c.shadow_rays)));
+    row("Total shadow hits:",
+        fmt::format("{} ({:.2f}%)", c.shadow_hits, percent(c.shadow_hits, c.shadow_rays)));
   }
   count("Supersampled pixels:", s.sampling.supersampled);
   count("B.V. intersection tests:", s.trace.bounds_tests);
@@ -95,7 +103,8 @@ std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bo
     const auto i = static_cast<std::size_t>(k);
     if (s.trace.tests[i] == 0) continue;
     row(fmt::format("{} intersection tests:", kLeafNames[i]).c_str(),
-        fmt::format("{} ({} hit, {:f}%)", s.trace.tests[i], s.trace.hits[i], percent(s.trace.hits[i], s.trace.tests[i])));
+        fmt::format("{} ({} hit, {:f}%)", s.trace.tests[i], s.trace.hits[i],
+                    percent(s.trace.hits[i], s.trace.tests[i])));
     if (k < static_cast<int>(LeafKind::kCsg)) {
       tests += s.trace.tests[i];
       test_hits += s.trace.hits[i];
@@ -135,13 +144,20 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
   j.value("scene_hash", run.scene_hash).value("outcome", run.outcome);
   j.begin_object("settings");
   j.value("width", r.width).value("height", r.height);
-  j.begin_array("window").value("", r.min_x).value("", r.max_x).value("", r.min_y).value("", r.max_y).end_array();
+  j.begin_array("window")
+      .value("", r.min_x)
+      .value("", r.max_x)
+      .value("", r.min_y)
+      .value("", r.max_y)
+      .end_array();
   j.value("samples", r.samples).value("jitter", r.jitter).value("max_depth", r.max_depth);
   j.value("seed", r.seed).value("first_frame", r.first_frame).value("frames", r.frames);
   j.end_object();
   j.begin_object("rays");
   j.value("eye", c.eye_rays).value("shadow", c.shadow_rays).value("reflected", c.reflected_rays);
-  j.value("transmitted", c.transmitted_rays).value("total", c.total_rays()).value("shaded_hits", c.shaded_hits);
+  j.value("transmitted", c.transmitted_rays)
+      .value("total", c.total_rays())
+      .value("shaded_hits", c.shaded_hits);
   j.value("shadow_hits", c.shadow_hits).value("transparent_walks", c.transparent_walks);
   j.value("total_reflections", c.total_reflections);
   j.end_object();
@@ -154,7 +170,10 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
   j.value("bounds_tests", s.trace.bounds_tests);
   for (std::size_t k = 0; k < kLeafKinds; ++k) {
     if (s.trace.tests[k] == 0) continue;
-    j.begin_object(kLeafNames[k]).value("tests", s.trace.tests[k]).value("hits", s.trace.hits[k]).end_object();
+    j.begin_object(kLeafNames[k])
+        .value("tests", s.trace.tests[k])
+        .value("hits", s.trace.hits[k])
+        .end_object();
   }
   j.end_object();
   j.begin_object("skipped");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Statistics for people (the table of language.md 6.3, and more) and for programs (JSON), from the same numbers.
+// Statistics for people (the table of language.md 6.3, and more) and for programs (JSON), from the same
+// numbers.
 #pragma once
 
 #include <string>
@@ -11,14 +12,14 @@ namespace rayshade {
 
 /// How a run ended; `--stats` records it.
 struct RunSummary {
-  std::string scene;                 ///< name as given
+  std::string scene;  ///< name as given
   std::string scene_hash;
   std::string version;
-  std::string outcome;               ///< "complete", "stopped" or "failed"
+  std::string outcome;  ///< "complete", "stopped" or "failed"
   double parse_seconds = 0;
-  double total_cpu_seconds = 0;      ///< user and system, of the process
+  double total_cpu_seconds = 0;  ///< user and system, of the process
   double wall_seconds = 0;
-  std::uint64_t peak_memory = 0;     ///< bytes, largest resident set
+  std::uint64_t peak_memory = 0;  ///< bytes, largest resident set
 };
 
 /// What will be rendered, in the manner of the original's verbose report.
@@ -26,6 +27,7 @@ std::string settings_text(const RenderSettings& settings, const Renderer& render
 /// The statistics table; `verbose` adds what was skipped and where time went.
 std::string statistics_text(const RenderStatistics& statistics, const RunSummary& run, bool verbose);
 /// All of it as one JSON object.
-std::string statistics_json(const RenderStatistics& statistics, const RenderSettings& settings, const RunSummary& run);
+std::string statistics_json(const RenderStatistics& statistics, const RenderSettings& settings,
+                            const RunSummary& run);
 
 }  // namespace rayshade

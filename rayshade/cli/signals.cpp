@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "rayshade/cli/signals.h"
 
-#include <csignal>
 #include <unistd.h>
+
+#include <csignal>
 
 #include "rayshade/cli/program.h"
 
@@ -24,12 +25,15 @@ void handle(int signal) {
     case SIGTERM:
       if (g_stop.exchange(true) && signal == SIGINT) _exit(kStopped);
       break;
-    case SIGHUP: g_save = true; break;
+    case SIGHUP:
+      g_save = true;
+      break;
     case SIGUSR1:
       g_progress = true;
       g_save = true;
       break;
-    default: break;
+    default:
+      break;
   }
 }
 

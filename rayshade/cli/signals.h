@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Signals as requests that the rendering polls: INT and TERM stop (a second INT leaves at once), HUP asks for the
-// partial picture, USR1 for a progress line and the partial picture.
+// Signals as requests that the rendering polls: INT and TERM stop (a second INT leaves at once), HUP asks for
+// the partial picture, USR1 for a progress line and the partial picture.
 #pragma once
 
 #include <atomic>

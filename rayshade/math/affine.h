@@ -31,7 +31,8 @@ constexpr Affine then(const Affine& first, const Affine& second) {
 
 constexpr double determinant(const Affine& a) { return dot(a.rows[0], cross(a.rows[1], a.rows[2])); }
 
-/// The inverse by adjugate over determinant; nothing where the linear part is singular relative to its own size
+/// The inverse by adjugate over determinant; nothing where the linear part is singular relative to its own
+/// size
 /// (|det| <= 1e-14 times the product of the row lengths: rounding decides below that) or not finite.
 inline std::optional<Affine> inverse(const Affine& a) {
   const double det = determinant(a);
@@ -58,9 +59,7 @@ struct AffinePair {
   Vec3 normal(const Vec3& n) const { return normalize(inverse.transposed_vector(n)); }
 };
 
-constexpr Affine scaling(const Vec3& s) {
-  return {{{s.x, 0, 0}, {0, s.y, 0}, {0, 0, s.z}}, {}};
-}
+constexpr Affine scaling(const Vec3& s) { return {{{s.x, 0, 0}, {0, s.y, 0}, {0, 0, s.z}}, {}}; }
 constexpr Affine translation(const Vec3& t) { return {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, t}; }
 /// Right-handed turn about a unit axis (objects.md 1.4).
 Affine rotation(const Vec3& unit_axis, double radians);

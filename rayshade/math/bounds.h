@@ -9,7 +9,8 @@
 
 namespace rayshade {
 
-/// The closed box [lo, hi]. The default box is empty: it holds no point, and joining it to another changes nothing.
+/// The closed box [lo, hi]. The default box is empty: it holds no point, and joining it to another changes
+/// nothing.
 struct Bounds3 {
   static constexpr double kInf = std::numeric_limits<double>::infinity();
   Vec3 lo{kInf, kInf, kInf};
@@ -19,9 +20,7 @@ struct Bounds3 {
 
   bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
   /// True where some side is infinite (planes).
-  bool unbounded() const {
-    return !empty() && !(is_finite(lo) && is_finite(hi));
-  }
+  bool unbounded() const { return !empty() && !(is_finite(lo) && is_finite(hi)); }
   void add(const Vec3& p) {
     lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
     hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};

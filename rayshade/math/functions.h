@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The one header through which pixels see transcendental functions.
 //
-// The C library picks other code on other processors, so the last bits of its sin, pow, ... differ from machine to
-// machine. These are SLEEF's "cinz" scalar functions: no fused operations, the same bits on every x86-64 processor,
-// error at most 1.0 ulp (hypot 0.5). sqrt, floor, fabs and ldexp are exact in IEEE arithmetic and come from <cmath>.
+// The C library picks other code on other processors, so the last bits of its sin, pow, ... differ from
+// machine to machine. These are SLEEF's "cinz" scalar functions: no fused operations, the same bits on every
+// x86-64 processor, error at most 1.0 ulp (hypot 0.5). sqrt, floor, fabs and ldexp are exact in IEEE
+// arithmetic and come from <cmath>.
 #pragma once
 
 namespace rayshade::fn {

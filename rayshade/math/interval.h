@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Closed intervals with outward rounding, for conservative bounds of animated values.
 //
-// Every operation widens its result by one ulp on both sides (four for transcendental functions), which contains both
-// the exact range of the operation and every rounded result that rayshade/math computes for members of its operands.
-// Members for which an operation has no value (the root of a negative number, 0/0) are left out of its range; a range
-// of which nothing is known is everything().
+// Every operation widens its result by one ulp on both sides (four for transcendental functions), which
+// contains both the exact range of the operation and every rounded result that rayshade/math computes for
+// members of its operands. Members for which an operation has no value (the root of a negative number, 0/0)
+// are left out of its range; a range of which nothing is known is everything().
 #pragma once
 
 #include <limits>

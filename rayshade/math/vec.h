@@ -7,7 +7,8 @@
 
 namespace rayshade {
 
-// The original's two universal constants (language.md conventions): the general tolerance and infinite distance.
+// The original's two universal constants (language.md conventions): the general tolerance and infinite
+// distance.
 inline constexpr double kEpsilon = 1e-5;
 inline constexpr double kFar = 1e14;
 
@@ -37,10 +38,12 @@ constexpr double length_squared(const Vec3& a) { return dot(a, a); }
 inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 inline Vec3 abs(const Vec3& a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
 inline double max_abs(const Vec3& a) { return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}); }
-inline bool is_finite(const Vec3& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
+inline bool is_finite(const Vec3& a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 
-/// `a` scaled to unit length; unchanged where its length is zero or not finite (objects.md 1.8, FIX). Vectors whose
-/// squared length would under- or overflow are scaled first.
+/// `a` scaled to unit length; unchanged where its length is zero or not finite (objects.md 1.8, FIX). Vectors
+/// whose squared length would under- or overflow are scaled first.
 inline Vec3 normalize(const Vec3& a) {
   const double square = dot(a, a);
   if (square > 1e-280 && square < 1e280) return a / std::sqrt(square);
@@ -50,14 +53,15 @@ inline Vec3 normalize(const Vec3& a) {
   return scaled / length(scaled);
 }
 
-/// The "Norm" of textures.md 0: `a` is left unchanged where it is shorter than kEpsilon; there the threshold is named.
+/// The "Norm" of textures.md 0: `a` is left unchanged where it is shorter than kEpsilon; there the threshold
+/// is named.
 inline Vec3 normalize_above_epsilon(const Vec3& a) {
   const double len = length(a);
   return len < kEpsilon ? a : a / len;
 }
 
-/// The index (0, 1, 2) of the component of largest magnitude, in the original's order of preference (objects.md 4.4):
-/// x only if strictly larger than both others, then y only if strictly larger than z.
+/// The index (0, 1, 2) of the component of largest magnitude, in the original's order of preference
+/// (objects.md 4.4): x only if strictly larger than both others, then y only if strictly larger than z.
 inline int dominant_axis(const Vec3& a) {
   const Vec3 m = abs(a);
   if (m.x > m.y && m.x > m.z) return 0;

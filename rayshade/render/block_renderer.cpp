@@ -15,7 +15,8 @@ constexpr std::size_t kChunk = 1024;
 
 void note_layer(const SampleResult& result, BlockPixels::Layer& layer) {
   layer.depth = result.hit ? static_cast<float>(result.distance) : std::numeric_limits<float>::infinity();
-  for (int axis = 0; axis < 3; ++axis) layer.normal[axis] = result.hit ? static_cast<float>(result.normal[axis]) : 0.0f;
+  for (int axis = 0; axis < 3; ++axis)
+    layer.normal[axis] = result.hit ? static_cast<float>(result.normal[axis]) : 0.0f;
   layer.object = result.hit ? static_cast<float>(result.leaf + 1) : 0.0f;
 }
 
@@ -30,15 +31,15 @@ void store(double* pixel, const Color& color, double alpha) {
 
 BlockRenderer::BlockRenderer(const FrameScene& frame) : frame_(frame), tree_(frame.shading) {}
 
-/// The one sample of a pixel that is not fully sampled (shading.md 7.3): uniform over its N x N samples, and such that
-/// N x N pixels together take each once. Neighbours then see different parts of the lens, the shutter and the lights,
-/// and calm regions keep less noise than with independent choices.
+/// The one sample of a pixel that is not fully sampled (shading.md 7.3): uniform over its N x N samples, and
+/// such that N x N pixels together take each once. Neighbours then see different parts of the lens, the
+/// shutter and the lights, and calm regions keep less noise than with independent choices.
 int BlockRenderer::chosen_sample(int x, int y) const {
   const int side = frame_.grid->samples_per_side();
   const int count = side * side;
   if (count == 1) return 0;
-  const RandomKey key{frame_.shading.settings->seed, frame_.shading.frame, static_cast<std::uint32_t>(x / side),
-                      static_cast<std::uint32_t>(y / side), 0};
+  const RandomKey key{frame_.shading.settings->seed, frame_.shading.frame,
+                      static_cast<std::uint32_t>(x / side), static_cast<std::uint32_t>(y / side), 0};
   // An affine permutation of the tile's pixels; the factor has no divisor in common with the count.
   const auto random = uniform2(key, dimension(kRootPath, Purpose::kSampleChoice));
   int factor = 1 + static_cast<int>(random[0] * (count - 1));
@@ -65,7 +66,8 @@ EyeSample BlockRenderer::eye_sample(int x, int y, int k) const {
   } else {
     out.ray = frame_.camera->ray(u, v);
   }
-  const double xi = settings.jitter && settings.shutter > 0 ? uniform(key, dimension(0, Purpose::kTime)) : 0.0;
+  const double xi =
+      settings.jitter && settings.shutter > 0 ? uniform(key, dimension(0, Purpose::kTime)) : 0.0;
   out.ray.time = frame_.camera->time(frame_.shading.frame, out.sample_number, xi);
   return out;
 }
@@ -85,7 +87,8 @@ void BlockRenderer::trace_samples() {
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
     trace_range(i, 1);
-    microseconds_[i] = std::chrono::duration<float, std::micro>(std::chrono::steady_clock::now() - start).count();
+    microseconds_[i] =
+        std::chrono::duration<float, std::micro>(std::chrono::steady_clock::now() - start).count();
   }
 }
 

@@ -18,29 +18,29 @@ struct FrameScene {
   ShadingScene shading;
   const Camera* camera = nullptr;
   const SampleGrid* grid = nullptr;
-  bool layers = false;              ///< depth, normal, object and samples are wanted
-  bool cost = false;                ///< tests and time per pixel are wanted
-  bool sample_map = false;          ///< alpha tells which pixels are fully sampled (-m)
+  bool layers = false;      ///< depth, normal, object and samples are wanted
+  bool cost = false;        ///< tests and time per pixel are wanted
+  bool sample_map = false;  ///< alpha tells which pixels are fully sampled (-m)
 };
 
 /// Finished pixels of a rectangle, row by row.
 struct BlockPixels {
   PixelRect rect;
   struct Layer {
-    float depth = 0;                ///< distance of the first sample's hit; infinite where nothing was hit
+    float depth = 0;  ///< distance of the first sample's hit; infinite where nothing was hit
     float normal[3] = {0, 0, 0};
-    float object = 0;               ///< number of the primitive, from 1; 0 where nothing was hit
+    float object = 0;  ///< number of the primitive, from 1; 0 where nothing was hit
     float samples = 0;
-    float tests = 0;                ///< exact tests and bounds tests of all rays of the pixel
+    float tests = 0;  ///< exact tests and bounds tests of all rays of the pixel
     float bounds_tests = 0;
     float microseconds = 0;
   };
-  std::vector<double> rgba;         ///< 4 per pixel: linear colour and alpha
-  std::vector<Layer> layers;        ///< empty unless layers or cost are wanted
+  std::vector<double> rgba;   ///< 4 per pixel: linear colour and alpha
+  std::vector<Layer> layers;  ///< empty unless layers or cost are wanted
 };
 
-/// Renders blocks; one per thread. The pixels of a rectangle are a function of the frame and the rectangle's pixels
-/// alone, whatever rectangle they are part of.
+/// Renders blocks; one per thread. The pixels of a rectangle are a function of the frame and the rectangle's
+/// pixels alone, whatever rectangle they are part of.
 class BlockRenderer {
  public:
   explicit BlockRenderer(const FrameScene& frame);
@@ -64,7 +64,7 @@ class BlockRenderer {
   SamplingCounts counts_;
   std::vector<EyeSample> samples_;
   std::vector<SampleResult> results_;
-  std::vector<float> microseconds_;         ///< per sample, when costs are wanted
+  std::vector<float> microseconds_;  ///< per sample, when costs are wanted
 };
 
 }  // namespace rayshade

@@ -11,30 +11,39 @@ std::string text_of(const Color& c) { return fmt::format("[{:.6f} {:.6f} {:.6f}]
 
 const char* name_of(RayKind kind) {
   switch (kind) {
-    case RayKind::kEye: return "eye ray";
-    case RayKind::kReflected: return "reflected ray";
-    case RayKind::kTransmitted: return "transmitted ray";
-    case RayKind::kShadow: return "shadow ray";
+    case RayKind::kEye:
+      return "eye ray";
+    case RayKind::kReflected:
+      return "reflected ray";
+    case RayKind::kTransmitted:
+      return "transmitted ray";
+    case RayKind::kShadow:
+      return "shadow ray";
   }
   return "ray";
 }
 
 const char* name_of(LightKind kind) {
   switch (kind) {
-    case LightKind::kPoint: return "point";
-    case LightKind::kDirectional: return "directional";
-    case LightKind::kSpot: return "spot";
-    case LightKind::kExtended: return "extended";
-    case LightKind::kArea: return "area";
+    case LightKind::kPoint:
+      return "point";
+    case LightKind::kDirectional:
+      return "directional";
+    case LightKind::kSpot:
+      return "spot";
+    case LightKind::kExtended:
+      return "extended";
+    case LightKind::kArea:
+      return "area";
   }
   return "light";
 }
 
 const char* name_of(LeafKind kind) {
-  static constexpr const char* kNames[] = {"plane",    "sphere",          "box",         "disc",    "cylinder",
-                                           "cone",     "torus",           "triangle",    "smooth triangle",
-                                           "uv triangle", "polygon",      "blob",        "height field",
-                                           "CSG object", "instance"};
+  static constexpr const char* kNames[] = {"plane",           "sphere",      "box",     "disc",
+                                           "cylinder",        "cone",        "torus",   "triangle",
+                                           "smooth triangle", "uv triangle", "polygon", "blob",
+                                           "height field",    "CSG object",  "instance"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -45,33 +54,36 @@ std::string ExplainText::object_name(const Hit& hit) const {
   std::string out = fmt::format("{} {}", name_of(leaf.kind), hit.leaf + 1);
   if (hit.instances.count > 0) {
     out += " in instance";
-    for (std::uint32_t i = 0; i < hit.instances.count; ++i) out += fmt::format(" {}", hit.instances.leaves[i] + 1);
+    for (std::uint32_t i = 0; i < hit.instances.count; ++i)
+      out += fmt::format(" {}", hit.instances.leaves[i] + 1);
   }
   return out;
 }
 
 void ExplainText::on_hit(const HitEvent& event) {
   Entry entry;
-  entry.head = fmt::format("{}, depth {}, weight {}: from {} toward {}, time {:.6g}", name_of(event.kind), event.depth,
-                           text_of(event.contribution), text_of(event.ray->origin), text_of(event.ray->direction),
-                           event.ray->time);
+  entry.head = fmt::format("{}, depth {}, weight {}: from {} toward {}, time {:.6g}", name_of(event.kind),
+                           event.depth, text_of(event.contribution), text_of(event.ray->origin),
+                           text_of(event.ray->direction), event.ray->time);
   if (!event.found) {
     entry.lines.push_back("hits nothing: background " + text_of(frame_.shading.settings->background));
   } else {
     const WorldHit& world = event.surface->world;
     const Surface& s = event.surface->surface;
-    entry.lines.push_back(fmt::format("hits {} at distance {:.12g}, {}", object_name(*event.hit), event.distance,
-                                      world.entering ? "entering" : "leaving"));
+    entry.lines.push_back(fmt::format("hits {} at distance {:.12g}, {}", object_name(*event.hit),
+                                      event.distance, world.entering ? "entering" : "leaving"));
     entry.lines.push_back(fmt::format("point {} normal {}, known within {:.2g}", text_of(world.point),
                                       text_of(world.normal), world.error));
-    entry.lines.push_back(fmt::format("surface: ambient {} diffuse {} specular {} specpow {:g}", text_of(s.ambient),
-                                      text_of(s.diffuse), text_of(s.specular), s.specular_exponent));
+    entry.lines.push_back(fmt::format("surface: ambient {} diffuse {} specular {} specpow {:g}",
+                                      text_of(s.ambient), text_of(s.diffuse), text_of(s.specular),
+                                      s.specular_exponent));
     if (s.reflectance != 0 || s.transparency != 0 || s.translucency != 0) {
-      entry.lines.push_back(fmt::format("         reflect {:g} transp {:g} body {} index {:g} extinct {:g} translu {:g}",
-                                        s.reflectance, s.transparency, text_of(s.body), s.index, s.extinction,
-                                        s.translucency));
+      entry.lines.push_back(
+          fmt::format("         reflect {:g} transp {:g} body {} index {:g} extinct {:g} translu {:g}",
+                      s.reflectance, s.transparency, text_of(s.body), s.index, s.extinction, s.translucency));
     }
-    entry.lines.push_back("ambient light gives " + text_of(s.ambient * frame_.shading.settings->ambient_light));
+    entry.lines.push_back("ambient light gives " +
+                          text_of(s.ambient * frame_.shading.settings->ambient_light));
   }
   entry.root = event.parent == kNone;
   const std::size_t number = entries_.size();
@@ -83,10 +95,14 @@ void ExplainText::on_hit(const HitEvent& event) {
 void ExplainText::on_light(const LightEvent& event) {
   const ShadingLight& light = frame_.shading.lights[event.light];
   const std::size_t written = frame_.shading.lights.size() - event.light;
-  std::string line = fmt::format("light {} ({}): cosine {:.6g}, ", written, name_of(light.kind), event.cosine);
-  if (event.skipped) line += "no effect";
-  else if (event.arriving == Color{}) line += "in shadow";
-  else line += fmt::format("arrives {}, adds {}", text_of(event.arriving), text_of(event.added));
+  std::string line =
+      fmt::format("light {} ({}): cosine {:.6g}, ", written, name_of(light.kind), event.cosine);
+  if (event.skipped)
+    line += "no effect";
+  else if (event.arriving == Color{})
+    line += "in shadow";
+  else
+    line += fmt::format("arrives {}, adds {}", text_of(event.arriving), text_of(event.added));
   entries_[open_.at(event.node)].lines.push_back(std::move(line));
 }
 

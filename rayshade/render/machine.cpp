@@ -73,8 +73,8 @@ int available_threads() {
 }
 
 std::uint64_t estimate_picture_bytes(const RenderSettings& settings, std::size_t bytes_per_pixel) {
-  return static_cast<std::uint64_t>(settings.window_width()) * static_cast<std::uint64_t>(settings.window_height()) *
-         bytes_per_pixel;
+  return static_cast<std::uint64_t>(settings.window_width()) *
+         static_cast<std::uint64_t>(settings.window_height()) * bytes_per_pixel;
 }
 
 }  // namespace rayshade

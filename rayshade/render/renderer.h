@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A scene ready to be rendered, and the threads that render its frames.
 //
-// Blocks are handed to threads by a counter; a finished block is converted to the picture's format at once. No sum
-// depends on which thread did what when. A stop request ends after the blocks at hand, so that what is in the frame
-// buffer is whole blocks.
+// Blocks are handed to threads by a counter; a finished block is converted to the picture's format at once.
+// No sum depends on which thread did what when. A stop request ends after the blocks at hand, so that what is
+// in the frame buffer is whole blocks.
 #pragma once
 
 #include <atomic>
@@ -21,18 +21,18 @@ namespace rayshade {
 
 struct RenderOptions {
   int threads = 1;
-  int block_side = 0;               ///< 0: chosen from picture and threads
+  int block_side = 0;  ///< 0: chosen from picture and threads
   bool brute_force = false;
   bool layers = false;
   bool cost = false;
-  bool sample_map = false;          ///< alpha tells which pixels are fully sampled
+  bool sample_map = false;  ///< alpha tells which pixels are fully sampled
 };
 
 /// How far a frame is.
 struct FrameProgress {
   std::int64_t blocks_done = 0, blocks = 0;
   std::int64_t pixels_done = 0, pixels = 0;
-  std::int64_t rows_done = 0;       ///< rows of the window that are complete from the top
+  std::int64_t rows_done = 0;  ///< rows of the window that are complete from the top
 };
 
 /// An error while preparing or rendering, with its place where there is one.
@@ -44,13 +44,14 @@ struct RenderError : std::runtime_error {
 class Renderer {
  public:
   /// Compiles geometry and textures; reads the files they name through the provider. Throws RenderError.
-  Renderer(const Scene& scene, const RenderSettings& settings, Provider& provider, const RenderOptions& options);
+  Renderer(const Scene& scene, const RenderSettings& settings, Provider& provider,
+           const RenderOptions& options);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Renders a frame into `picture` (of the size of the window). Returns false if `stop` became true before the end.
-  /// `progress` is called from the calling thread, a few times per second. Throws RenderError.
+  /// Renders a frame into `picture` (of the size of the window). Returns false if `stop` became true before
+  /// the end. `progress` is called from the calling thread, a few times per second. Throws RenderError.
   bool render_frame(int frame, FrameBuffer& picture, const std::atomic<bool>& stop,
                     const std::function<void(const FrameProgress&)>& progress);
   /// The ray tree of one pixel as text.
@@ -76,8 +77,8 @@ class Renderer {
 
 /// Bytes that a rendering will need, before anything large is allocated: picture, layers, threads.
 std::uint64_t estimate_picture_bytes(const RenderSettings& settings, std::size_t bytes_per_pixel);
-/// Bytes that this process may still take: the smallest of the machine's available memory, the limit of its control
-/// group, and its address space limit.
+/// Bytes that this process may still take: the smallest of the machine's available memory, the limit of its
+/// control group, and its address space limit.
 std::uint64_t available_memory();
 /// Threads that this process may use: affinity mask, control group quota, SLURM_CPUS_PER_TASK.
 int available_threads();

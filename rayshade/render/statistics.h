@@ -14,8 +14,8 @@ namespace rayshade {
 /// Counts of one block renderer.
 struct SamplingCounts {
   std::uint64_t pixels = 0;
-  std::uint64_t supersampled = 0;      ///< pixels that got all their samples, borders included
-  std::uint64_t halo_samples = 0;      ///< single samples beyond the border of a block, for refinement
+  std::uint64_t supersampled = 0;  ///< pixels that got all their samples, borders included
+  std::uint64_t halo_samples = 0;  ///< single samples beyond the border of a block, for refinement
   std::uint64_t blocks = 0;
   void add(const SamplingCounts& o) {
     pixels += o.pixels;
@@ -32,9 +32,9 @@ struct RenderStatistics {
   CompileCounts compile;
   std::uint64_t nan_pixels = 0, negative_pixels = 0;
   std::uint64_t peak_tree_nodes = 0;
-  double compile_seconds = 0;          ///< wall clock
-  double render_seconds = 0;           ///< wall clock, all frames
-  double cpu_seconds = 0;              ///< of the rendering threads
+  double compile_seconds = 0;  ///< wall clock
+  double render_seconds = 0;   ///< wall clock, all frames
+  double cpu_seconds = 0;      ///< of the rendering threads
   int threads = 1;
   int frames = 0;
   // Features that the scene does not use, and whose code therefore never ran:

@@ -51,8 +51,8 @@ class Camera {
   std::array<double, 2> project(const Vec3& point) const;
 
  private:
-  // In fused arithmetic, as the reference pictures were made: where a texture changes at a plane of the scene, the
-  // pattern of rounding shows (textures.md D20).
+  // In fused arithmetic, as the reference pictures were made: where a texture changes at a plane of the
+  // scene, the pattern of rounding shows (textures.md D20).
   Vec3 direction(double u, double v) const { return fused::unit_of_sum(corner_, u, step_x_, v, step_y_); }
 
   Vec3 eye_, view_;  // view_: eye to look point

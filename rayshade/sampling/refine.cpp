@@ -19,8 +19,13 @@ int class_of(int x, int y) { return (x + 2 * y) % 5; }
 /// The steps of one call; see the head of refine.h.
 class Refinement {
  public:
-  Refinement(const PixelRect& rect, std::span<const Color> single, const Color& threshold, int width, int height)
-      : threshold_(threshold), width_(width), height_(height), outer_(around(rect, kRefinementReach)), single_(single) {
+  Refinement(const PixelRect& rect, std::span<const Color> single, const Color& threshold, int width,
+             int height)
+      : threshold_(threshold),
+        width_(width),
+        height_(height),
+        outer_(around(rect, kRefinementReach)),
+        single_(single) {
     find_active(rect);
     find_firing(rect);
   }
@@ -31,7 +36,8 @@ class Refinement {
       for (int x = rect.x0; x < rect.x1; ++x) {
         bool chosen = on_border(x, y);
         for (const auto& [dx, dy] : kPlus) {
-          chosen = chosen || (fire_rect_.contains(x + dx, y + dy) && fires_[fire_rect_.index(x + dx, y + dy)]);
+          chosen =
+              chosen || (fire_rect_.contains(x + dx, y + dy) && fires_[fire_rect_.index(x + dx, y + dy)]);
         }
         full[rect.index(x, y)] = chosen;
       }
@@ -66,7 +72,8 @@ class Refinement {
     return false;
   }
 
-  /// The mean of the single samples within two pixels, rows and columns added, as far as they are on the screen.
+  /// The mean of the single samples within two pixels, rows and columns added, as far as they are on the
+  /// screen.
   Color estimate(int x, int y) const {
     Color sum;
     int count = 0;
@@ -107,8 +114,8 @@ class Refinement {
 }  // namespace
 
 PixelRect halo(const PixelRect& rect, int margin, int screen_width, int screen_height) {
-  return {std::max(0, rect.x0 - margin), std::max(0, rect.y0 - margin), std::min(screen_width, rect.x1 + margin),
-          std::min(screen_height, rect.y1 + margin)};
+  return {std::max(0, rect.x0 - margin), std::max(0, rect.y0 - margin),
+          std::min(screen_width, rect.x1 + margin), std::min(screen_height, rect.y1 + margin)};
 }
 
 bool contrast_exceeds(std::span<const Color, 5> colors, const Color& threshold) {
@@ -117,7 +124,8 @@ bool contrast_exceeds(std::span<const Color, 5> colors, const Color& threshold) 
     lowest = {std::min(lowest.r, c.r), std::min(lowest.g, c.g), std::min(lowest.b, c.b)};
     highest = {std::max(highest.r, c.r), std::max(highest.g, c.g), std::max(highest.b, c.b)};
   }
-  return channel_exceeds(lowest.r, highest.r, threshold.r) || channel_exceeds(lowest.g, highest.g, threshold.g) ||
+  return channel_exceeds(lowest.r, highest.r, threshold.r) ||
+         channel_exceeds(lowest.g, highest.g, threshold.g) ||
          channel_exceeds(lowest.b, highest.b, threshold.b);
 }
 

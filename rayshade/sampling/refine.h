@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: MIT
 // Which pixels get all their samples (shading.md 7.5), decided without an order of scan.
 //
-// The original refines row by row while it renders: where the contrast over a pixel and its four neighbours (a "plus")
-// is too large, it fully samples these five at once, and goes on with the new values. So its choice depends on the
-// order of scan and on every random draw before. Ours has the same effect, from single samples and two synchronous
-// rounds alone:
+// The original refines row by row while it renders: where the contrast over a pixel and its four neighbours
+// (a "plus") is too large, it fully samples these five at once, and goes on with the new values. So its
+// choice depends on the order of scan and on every random draw before. Ours has the same effect, from single
+// samples and two synchronous rounds alone:
 //
 //   1. A pixel is *active* if the contrast test holds over the single samples of its plus.
-//   2. Pixels have one of five classes, (x + 2 y) mod 5, so that the five of any plus differ. An active pixel assumes
-//      that all active pixels of lower classes have had their pluses fully sampled, and tests again, taking for each
-//      pixel so sampled the mean of the 13 single samples within two pixels of it, an estimate of its full value. If the
-//      test still holds, the pixel *fires*.
+//   2. Pixels have one of five classes, (x + 2 y) mod 5, so that the five of any plus differ. An active pixel
+//   assumes
+//      that all active pixels of lower classes have had their pluses fully sampled, and tests again, taking
+//      for each pixel so sampled the mean of the 13 single samples within two pixels of it, an estimate of
+//      its full value. If the test still holds, the pixel *fires*.
 //
-// Fully sampled are the pluses of the pixels that fire, and the border of the screen (where no test is made). A lone
-// odd sample in a calm region costs five full pixels, as in the original, and an edge gets the pixels on both of its
-// sides. The choice for a pixel depends on single samples no farther than kRefinementReach away, rows and columns added:
-// any tile, window or crop gives the same bytes at the price of a halo of single samples.
+// Fully sampled are the pluses of the pixels that fire, and the border of the screen (where no test is made).
+// A lone odd sample in a calm region costs five full pixels, as in the original, and an edge gets the pixels
+// on both of its sides. The choice for a pixel depends on single samples no farther than kRefinementReach
+// away, rows and columns added: any tile, window or crop gives the same bytes at the price of a halo of
+// single samples.
 #pragma once
 
 #include <span>
@@ -25,8 +27,8 @@
 
 namespace rayshade {
 
-/// One for the plus of the pixel that fires, one for the plus that it tests, and two more for the estimates there; an
-/// active pixel of a lower class that reaches into that plus, and what it tests, is no farther.
+/// One for the plus of the pixel that fires, one for the plus that it tests, and two more for the estimates
+/// there; an active pixel of a lower class that reaches into that plus, and what it tests, is no farther.
 inline constexpr int kRefinementReach = 4;
 
 /// A rectangle of pixels in screen coordinates, [x0, x1) x [y0, y1).
@@ -36,7 +38,8 @@ struct PixelRect {
   int height() const { return y1 - y0; }
   bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
   std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x - x0);
+    return static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width()) +
+           static_cast<std::size_t>(x - x0);
   }
   std::size_t area() const { return static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()); }
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Values that may vary with time (language.md 3.2): immutable trees over `time` and `frame`, evaluated over doubles
-// or, for conservative motion bounds, over an interval of times (rule 9). Constants carry no tree.
+// Values that may vary with time (language.md 3.2): immutable trees over `time` and `frame`, evaluated over
+// doubles or, for conservative motion bounds, over an interval of times (rule 9). Constants carry no tree.
 #pragma once
 
 #include <array>
@@ -14,9 +14,25 @@
 namespace rayshade {
 
 enum class Operation : std::uint8_t {
-  kConstant, kTime, kFrame,
-  kAdd, kSubtract, kMultiply, kDivide, kRemainder, kPower, kNegate,
-  kSin, kCos, kTan, kAsin, kAcos, kAtan, kSqrt, kHypot, kLinear,
+  kConstant,
+  kTime,
+  kFrame,
+  kAdd,
+  kSubtract,
+  kMultiply,
+  kDivide,
+  kRemainder,
+  kPower,
+  kNegate,
+  kSin,
+  kCos,
+  kTan,
+  kAsin,
+  kAcos,
+  kAtan,
+  kSqrt,
+  kHypot,
+  kLinear,
 };
 
 /// The moment at which an expression is evaluated.
@@ -32,18 +48,19 @@ struct ExpressionError : std::runtime_error {
 
 class Expression {
  public:
-  /// Limits of one expression, with the symbols it uses written out: each evaluation takes bounded time, and the text
-  /// can be parsed again.
+  /// Limits of one expression, with the symbols it uses written out: each evaluation takes bounded time, and
+  /// the text can be parsed again.
   static constexpr int kMaxNodes = 100000;
   static constexpr int kMaxNesting = 2000;
 
-  Expression(double constant = 0) : constant_(constant) {}  // NOLINT(google-explicit-constructor): numbers are expressions
+  Expression(double constant = 0)
+      : constant_(constant) {}  // NOLINT(google-explicit-constructor): numbers are expressions
   static Expression time();
   static Expression frame();
-  /// An operation over its operands (unary operations take one, kLinear four). Folded to a constant when all operands
-  /// are constant and the operation is not kLinear. kRemainder: both truncated to int, C remainder; a constant
-  /// divisor of zero must be refused by the caller before (at run time it gives NaN). kPower is fn::pow.
-  /// Throws ExpressionError beyond the limits.
+  /// An operation over its operands (unary operations take one, kLinear four). Folded to a constant when all
+  /// operands are constant and the operation is not kLinear. kRemainder: both truncated to int, C remainder;
+  /// a constant divisor of zero must be refused by the caller before (at run time it gives NaN). kPower is
+  /// fn::pow. Throws ExpressionError beyond the limits.
   static Expression apply(Operation op, std::array<Expression, 4> operands);
 
   bool constant() const { return !node_; }

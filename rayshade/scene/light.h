@@ -15,13 +15,13 @@ struct Light {
   LightKind kind = LightKind::kPoint;
   Color intensity{1, 1, 1};
   bool no_shadow = false;
-  Vec3 position;                 ///< point, spot, extended: position; directional: direction toward the light, as
-                                 ///< written; area: corner
-  Vec3 target;                   ///< spot: the point it looks at
-  double exponent = 0;           ///< spot: coef
-  double inner = 180, outer = 180;  ///< spot: angles in degrees; 180 180 where none were written (FIX)
-  double radius = 0;             ///< extended
-  Vec3 u_end, v_end;             ///< area: end points of the two edges
+  Vec3 position;        ///< point, spot, extended: position; directional: direction toward the light, as
+                        ///< written; area: corner
+  Vec3 target;          ///< spot: the point it looks at
+  double exponent = 0;  ///< spot: coef
+  double inner = 180, outer = 180;   ///< spot: angles in degrees; 180 180 where none were written (FIX)
+  double radius = 0;                 ///< extended
+  Vec3 u_end, v_end;                 ///< area: end points of the two edges
   int u_samples = 1, v_samples = 1;  ///< area
   Location location;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Everything that a scene names is read through one door: names to bytes (rule 12). The shell reads files, tests and
-// fuzzers feed memory, and a cluster sends recorded bytes.
+// Everything that a scene names is read through one door: names to bytes (rule 12). The shell reads files,
+// tests and fuzzers feed memory, and a cluster sends recorded bytes.
 #pragma once
 
 #include <cstddef>
@@ -22,13 +22,13 @@ struct ProviderError : std::runtime_error {
 class Provider {
  public:
   virtual ~Provider() = default;
-  /// The whole content of `name`, taken as written (relative to the working directory). The name "-" is standard
-  /// input. Throws ProviderError. Thread-safe.
+  /// The whole content of `name`, taken as written (relative to the working directory). The name "-" is
+  /// standard input. Throws ProviderError. Thread-safe.
   virtual Bytes read(const std::string& name) = 0;
 };
 
-/// Reads files, pipes and standard input (once; later reads of "-" give the same bytes). Refuses directories, files
-/// larger than `limit` bytes, and streams of unknown size beyond 1 GiB.
+/// Reads files, pipes and standard input (once; later reads of "-" give the same bytes). Refuses directories,
+/// files larger than `limit` bytes, and streams of unknown size beyond 1 GiB.
 class FileProvider : public Provider {
  public:
   explicit FileProvider(std::size_t limit = std::size_t{8} << 30) : limit_(limit) {}

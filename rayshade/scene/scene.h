@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The scene as it was written: a passive value. It owns no global state; any number of scenes can be parsed and
-// rendered in one process, at once. Pools are deques so that a million triangles grow without copies.
+// The scene as it was written: a passive value. It owns no global state; any number of scenes can be parsed
+// and rendered in one process, at once. Pools are deques so that a million triangles grow without copies.
 #pragma once
 
 #include <deque>
@@ -18,11 +18,11 @@
 namespace rayshade {
 
 struct Scene {
-  std::vector<std::string> file_names{"-"};     ///< Location::file indexes this
+  std::vector<std::string> file_names{"-"};  ///< Location::file indexes this
   SceneSettings settings;
-  std::vector<Light> lights;                    ///< without `ambient`; in the order written; none: see default_light
+  std::vector<Light> lights;  ///< without `ambient`; in the order written; none: see default_light
   std::deque<Node> nodes;
-  std::vector<NodeId> world;                    ///< top-level objects in the order written
+  std::vector<NodeId> world;  ///< top-level objects in the order written
   std::deque<Aggregate> aggregates;
   std::deque<NamedObject> named_objects;
   std::deque<Surface> surfaces;

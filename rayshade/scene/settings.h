@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a scene says about viewing and rendering (language.md 3.4 and 4): only what was written is set. The program
-// merges these with its options into RenderSettings (resolve_settings), where every value is present.
+// What a scene says about viewing and rendering (language.md 3.4 and 4): only what was written is set. The
+// program merges these with its options into RenderSettings (resolve_settings), where every value is present.
 #pragma once
 
 #include <array>
@@ -23,31 +23,31 @@ enum class EffectKind : std::uint8_t { kFog, kMist, kFogDeck };
 struct AtmosphereEffect {
   EffectKind kind = EffectKind::kFog;
   Color color, thickness;
-  double zero = 0, scale = 1;              ///< mist
-  double altitude = 0, offset = 0;         ///< fogdeck
+  double zero = 0, scale = 1;       ///< mist
+  double altitude = 0, offset = 0;  ///< fogdeck
   Vec3 noise_scale{1, 1, 1};
   double chaos_scale = 0;
   int octaves = 0;
 };
 
-/// Values written in the scene; "first wins" and "last wins" are already applied (language.md 4), -1 where it means
-/// unset is already dropped.
+/// Values written in the scene; "first wins" and "last wins" are already applied (language.md 4), -1 where it
+/// means unset is already dropped.
 struct SceneSettings {
   std::optional<Vec3> eye, look, up;
   std::optional<double> horizontal_fov, vertical_fov;
   std::optional<double> aperture, focal_distance, eye_separation;
   std::optional<std::array<int, 2>> screen;
-  std::optional<std::array<int, 4>> window;     ///< minx maxx miny maxy
-  std::optional<std::array<double, 4>> crop;    ///< left right bottom top
-  std::optional<int> samples;                   ///< per side
+  std::optional<std::array<int, 4>> window;   ///< minx maxx miny maxy
+  std::optional<std::array<double, 4>> crop;  ///< left right bottom top
+  std::optional<int> samples;                 ///< per side
   std::optional<bool> jitter;
   std::optional<FilterKind> filter;
   std::optional<double> filter_width;
   std::optional<Color> contrast, cutoff;
   std::optional<int> max_depth;
   std::optional<Color> background;
-  bool toggle_transparent_shadows = false;      ///< an odd number of `shadowtransp`
-  std::optional<std::string> output;            ///< outfile
+  bool toggle_transparent_shadows = false;  ///< an odd number of `shadowtransp`
+  std::optional<std::string> output;        ///< outfile
   bool verbose = false, quiet = false;
   std::optional<int> report_frequency;
   std::optional<std::string> report_file;
@@ -55,7 +55,7 @@ struct SceneSettings {
   std::optional<int> frames;
   std::optional<Color> ambient_light;
   std::optional<double> atmosphere_index;
-  std::vector<AtmosphereEffect> effects;        ///< in the order written; applied last to first
+  std::vector<AtmosphereEffect> effects;  ///< in the order written; applied last to first
   Location screen_location, window_location, samples_location;  ///< for messages after parsing
 };
 
@@ -84,12 +84,12 @@ struct RenderSettings {
   Vec3 eye{0, -10, 0}, look{0, 0, 0}, up{0, 0, 1};
   double horizontal_fov = 45, vertical_fov = 45;
   double aperture = 0;
-  std::optional<double> focal_distance;         ///< unset: the eye to look distance, after the stereo shift
+  std::optional<double> focal_distance;  ///< unset: the eye to look distance, after the stereo shift
   double eye_separation = 0;
   Eye stereo = Eye::kCenter;
-  int width = 512, height = 512;                ///< the screen
+  int width = 512, height = 512;                       ///< the screen
   int min_x = 0, max_x = 511, min_y = 0, max_y = 511;  ///< the window, inclusive, rows from the top
-  int samples = 3;                              ///< per side, 1..64
+  int samples = 3;                                     ///< per side, 1..64
   bool jitter = true;
   FilterKind filter = FilterKind::kBox;
   double filter_width = 1;
@@ -112,8 +112,8 @@ struct RenderSettings {
   int window_height() const { return max_y - min_y + 1; }
 };
 
-/// A combination of settings that cannot be rendered (window outside the screen, view along up, samples out of range,
-/// absurd sizes, stereo without eye separation ...).
+/// A combination of settings that cannot be rendered (window outside the screen, view along up, samples out
+/// of range, absurd sizes, stereo without eye separation ...).
 struct SettingsError : std::runtime_error {
   SettingsError(const std::string& what, Location where = {}) : std::runtime_error(what), location(where) {}
   Location location;

@@ -6,21 +6,22 @@
 
 namespace rayshade {
 
-/// What light does at a surface. The defaults are those of a surface that is described but leaves a component out.
+/// What light does at a surface. The defaults are those of a surface that is described but leaves a component
+/// out.
 struct Surface {
   Color ambient;
   Color diffuse;
   Color specular;
   Color body{1, 1, 1};
-  Color translucent;                ///< colour of diffusely transmitted light
-  double specular_exponent = 15;    ///< specpow
-  double transmitted_exponent = 15; ///< third part of translu
+  Color translucent;                 ///< colour of diffusely transmitted light
+  double specular_exponent = 15;     ///< specpow
+  double transmitted_exponent = 15;  ///< third part of translu
   double reflectance = 0;
   double transparency = 0;
   double translucency = 0;
-  double extinction = 1;            ///< share of light left after one unit of length
+  double extinction = 1;  ///< share of light left after one unit of length
   double index = 1;
-  bool no_shadow = false;           ///< receives no shadows
+  bool no_shadow = false;  ///< receives no shadows
 
   bool operator==(const Surface&) const = default;
 };

@@ -17,16 +17,16 @@ namespace rayshade {
 
 enum class StepKind : std::uint8_t { kScale, kTranslate, kRotate, kMatrix };
 
-/// One written transform with at least one time-varying argument. Arguments in written order: kScale and kTranslate
-/// use 3, kRotate 4 (axis, degrees), kMatrix 12 (rows, then translation).
+/// One written transform with at least one time-varying argument. Arguments in written order: kScale and
+/// kTranslate use 3, kRotate 4 (axis, degrees), kMatrix 12 (rows, then translation).
 struct AnimatedStep {
   StepKind kind = StepKind::kScale;
   std::array<Expression, 12> arguments;
   Location location;
 };
 
-/// A degenerate value reached while moving (scale 0, singular matrix); rendering stops with an error that names the
-/// time and the place.
+/// A degenerate value reached while moving (scale 0, singular matrix); rendering stops with an error that
+/// names the time and the place.
 struct MotionError : std::runtime_error {
   MotionError(const std::string& what, Location where, double when)
       : std::runtime_error(what), location(where), time(when) {}
@@ -34,12 +34,13 @@ struct MotionError : std::runtime_error {
   double time;
 };
 
-/// A list of transforms, applied in the order written. Runs of constant ones are folded into one map; the inverse is
-/// always computed from the folded map, so that the canonical dump of a scene renders to the same bytes.
+/// A list of transforms, applied in the order written. Runs of constant ones are folded into one map; the
+/// inverse is always computed from the folded map, so that the canonical dump of a scene renders to the same
+/// bytes.
 class TransformList {
  public:
   struct Element {
-    Affine constant;                    ///< used when `animated` is empty
+    Affine constant;  ///< used when `animated` is empty
     std::optional<AnimatedStep> animated;
   };
 

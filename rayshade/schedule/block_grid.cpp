@@ -6,7 +6,10 @@
 namespace rayshade {
 
 BlockGrid::BlockGrid(int width, int height, int side)
-    : width_(width), height_(height), side_(std::max(1, side)), columns_((width_ - 1) / side_ + 1),
+    : width_(width),
+      height_(height),
+      side_(std::max(1, side)),
+      columns_((width_ - 1) / side_ + 1),
       rows_((height_ - 1) / side_ + 1) {}
 
 Block BlockGrid::block(std::int64_t number) const {

@@ -29,7 +29,8 @@ Color apply_fog_deck(const AtmosphereEffect& effect, const Color& color, const R
   const double w = (effect.altitude - ray.origin.z) / ray.direction.z;
   if (w < kEpsilon || w > distance) return color;
   const Vec3 crossing = ray.at(w);
-  const Vec3 q{crossing.x * effect.noise_scale.x, crossing.y * effect.noise_scale.y, crossing.z * effect.noise_scale.z};
+  const Vec3 q{crossing.x * effect.noise_scale.x, crossing.y * effect.noise_scale.y,
+               crossing.z * effect.noise_scale.z};
   double density = effect.offset;
   if (effect.chaos_scale != 0) density += effect.chaos_scale * abs_chaos(q, effect.octaves);
   if (density < kEpsilon) return color;
@@ -51,9 +52,15 @@ Color apply_atmosphere(const std::vector<AtmosphereEffect>& effects, const Color
   Color out = color;
   for (auto effect = effects.rbegin(); effect != effects.rend(); ++effect) {
     switch (effect->kind) {
-      case EffectKind::kFog: out = fade(out, *effect, distance); break;
-      case EffectKind::kMist: out = fade(out, *effect, mist_length(*effect, ray, distance, end)); break;
-      case EffectKind::kFogDeck: out = apply_fog_deck(*effect, out, ray, distance); break;
+      case EffectKind::kFog:
+        out = fade(out, *effect, distance);
+        break;
+      case EffectKind::kMist:
+        out = fade(out, *effect, mist_length(*effect, ray, distance, end));
+        break;
+      case EffectKind::kFogDeck:
+        out = apply_fog_deck(*effect, out, ray, distance);
+        break;
     }
   }
   return out;

@@ -8,20 +8,21 @@ namespace rayshade {
 
 struct ShadingCounts {
   std::uint64_t eye_rays = 0;
-  std::uint64_t shadow_rays = 0;          ///< light tests actually made
+  std::uint64_t shadow_rays = 0;  ///< light tests actually made
   std::uint64_t reflected_rays = 0;
   std::uint64_t transmitted_rays = 0;
   std::uint64_t shaded_hits = 0;
-  std::uint64_t shadow_hits = 0;          ///< shadow rays whose way met something
-  std::uint64_t transparent_walks = 0;    ///< shadow rays that were followed through transparent surfaces
+  std::uint64_t shadow_hits = 0;        ///< shadow rays whose way met something
+  std::uint64_t transparent_walks = 0;  ///< shadow rays that were followed through transparent surfaces
   std::uint64_t total_reflections = 0;
   // Skipped because it could not change the picture:
   std::uint64_t skipped_back_lights = 0;  ///< light behind an opaque surface
-  std::uint64_t skipped_dark_lights = 0;  ///< light or surface response exactly black, or outside the spot's cone
-  std::uint64_t skipped_unshadowed = 0;   ///< noshadow light or surface, or -n
-  std::uint64_t skipped_cutoff = 0;       ///< secondary rays below the cutoff
-  std::uint64_t skipped_depth = 0;        ///< hits at the maximum depth that would have spawned more
-  std::uint64_t skipped_textures = 0;     ///< hits with no texture on their path
+  std::uint64_t skipped_dark_lights =
+      0;  ///< light or surface response exactly black, or outside the spot's cone
+  std::uint64_t skipped_unshadowed = 0;  ///< noshadow light or surface, or -n
+  std::uint64_t skipped_cutoff = 0;      ///< secondary rays below the cutoff
+  std::uint64_t skipped_depth = 0;       ///< hits at the maximum depth that would have spawned more
+  std::uint64_t skipped_textures = 0;    ///< hits with no texture on their path
 
   void add(const ShadingCounts& o) {
     eye_rays += o.eye_rays;

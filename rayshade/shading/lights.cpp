@@ -47,7 +47,8 @@ std::vector<ShadingLight> prepare_lights(const Scene& scene) {
     for (int j = 0; j < nv; ++j) {
       for (int i = 0; i < nu; ++i) {
         ShadingLight cell = base;
-        cell.position = light.position + static_cast<double>(i) * base.edge_u + static_cast<double>(j) * base.edge_v;
+        cell.position =
+            light.position + static_cast<double>(i) * base.edge_u + static_cast<double>(j) * base.edge_v;
         lights.push_back(cell);
       }
     }
@@ -95,7 +96,8 @@ Illumination illuminate(const ShadingLight& light, const Vec3& point, double xi,
   return out;
 }
 
-Vec3 extended_target(const ShadingLight& light, const Vec3& point, int sample_number, int side, double xi, double zeta) {
+Vec3 extended_target(const ShadingLight& light, const Vec3& point, int sample_number, int side, double xi,
+                     double zeta) {
   const Vec3 center = light.position - point;
   Vec3 e1, e2;
   coordinate_system(center, e1, e2);

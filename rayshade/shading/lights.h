@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lights made ready for shading (shading.md 4): in the order in which they are evaluated (the reverse of their
-// definition), area lights split into their cells, constants computed once.
+// Lights made ready for shading (shading.md 4): in the order in which they are evaluated (the reverse of
+// their definition), area lights split into their cells, constants computed once.
 #pragma once
 
 #include <vector>
@@ -13,27 +13,27 @@ namespace rayshade {
 struct ShadingLight {
   LightKind kind = LightKind::kPoint;
   bool no_shadow = false;
-  bool black = false;               ///< intensity exactly zero: only its effect on translucency is left
+  bool black = false;  ///< intensity exactly zero: only its effect on translucency is left
   Color intensity;
-  Vec3 position;                    ///< corner of the cell for area lights; unit direction for directional ones
-  Vec3 axis;                        ///< spot: unit, from the light to its target
+  Vec3 position;  ///< corner of the cell for area lights; unit direction for directional ones
+  Vec3 axis;      ///< spot: unit, from the light to its target
   double exponent = 0;
-  bool cone = false;                ///< spot: inner angle below 90 degrees
+  bool cone = false;  ///< spot: inner angle below 90 degrees
   double cos_inner = -1, cos_outer = -1;
-  double radius = 0;                ///< extended
-  Vec3 edge_u, edge_v;              ///< area: edges of the cell
+  double radius = 0;    ///< extended
+  Vec3 edge_u, edge_v;  ///< area: edges of the cell
 };
 
 /// All lights of the scene (the default light where it defines none), in evaluation order.
 std::vector<ShadingLight> prepare_lights(const Scene& scene);
 
-/// How a light stands to a point before shadows: unit direction from the point, distance (kFar for directional), and
-/// the colour that arrives (intensity times spot factor).
+/// How a light stands to a point before shadows: unit direction from the point, distance (kFar for
+/// directional), and the colour that arrives (intensity times spot factor).
 struct Illumination {
   Vec3 direction;
   double distance = kFar;
   Color color;
-  bool reaches = true;              ///< false where the spot factor is exactly 0 or the light sits on the point
+  bool reaches = true;  ///< false where the spot factor is exactly 0 or the light sits on the point
 };
 
 /// `xi`, `zeta`: uniform in [0,1), used by area lights only (shading.md 4.3 with FIX 5).
@@ -44,6 +44,7 @@ double spot_factor(const ShadingLight& light, double x);
 
 /// The point of an extended light toward which the shadow ray of a sample goes, relative to the shaded point
 /// (shading.md 4.2): stratified over `side` x `side` cells by the sample number.
-Vec3 extended_target(const ShadingLight& light, const Vec3& point, int sample_number, int side, double xi, double zeta);
+Vec3 extended_target(const ShadingLight& light, const Vec3& point, int sample_number, int side, double xi,
+                     double zeta);
 
 }  // namespace rayshade

@@ -54,8 +54,8 @@ class Gloss final : public GlossDraws {
 
 }  // namespace
 
-/// A ray of the tree, from its birth until its colour has gone to its parent. Nodes are reused without being cleared:
-/// each group of members is written before it is read.
+/// A ray of the tree, from its birth until its colour has gone to its parent. Nodes are reused without being
+/// cleared: each group of members is written before it is read.
 struct RayTree::Node {
   // At birth:
   Ray ray;
@@ -63,14 +63,14 @@ struct RayTree::Node {
   Color contribution;
   std::uint64_t path;
   std::uint32_t parent;
-  std::uint32_t root;                    ///< index of the eye sample
+  std::uint32_t root;  ///< index of the eye sample
   std::uint32_t depth;
   RayKind kind;
   Slot slot;
-  std::uint8_t children;                 ///< bit per slot
+  std::uint8_t children;  ///< bit per slot
   std::uint8_t waiting;
   // The media stack is a chain of the ancestors that pushed an entry; they outlive their descendants.
-  std::uint32_t medium;                  ///< node whose entry is on top; kNone: the stack is empty
+  std::uint32_t medium;  ///< node whose entry is on top; kNone: the stack is empty
 
   // If it entered a medium, the entry pushed by this ray:
   std::uint32_t medium_below;
@@ -91,8 +91,8 @@ struct RayTree::Node {
 struct RayTree::Shade {
   std::uint32_t node = 0;
   TexturedHit hit;
-  Vec3 mirror;                           ///< R
-  double k = 0;                          ///< -I.N
+  Vec3 mirror;   ///< R
+  double k = 0;  ///< -I.N
   double extent = 1;
 };
 
@@ -101,11 +101,11 @@ struct RayTree::PendingLight {
   std::uint32_t shade = 0;
   std::uint32_t light = 0;
   double cosine = 0;
-  double highlight = 0;                  ///< R.L
-  Color color;                           ///< before shadows; after them when answered
-  bool shadowed = false;                 ///< a shadow ray decides
+  double highlight = 0;   ///< R.L
+  Color color;            ///< before shadows; after them when answered
+  bool shadowed = false;  ///< a shadow ray decides
   bool blocked = false;
-  bool skipped = false;                  ///< has no effect; kept only for the observer
+  bool skipped = false;  ///< has no effect; kept only for the observer
 };
 
 /// A shadow ray on its way through transparent surfaces (shading.md 5.3).
@@ -116,8 +116,8 @@ struct RayTree::Walk {
   bool in_medium = false;
   double extinction = 1;
   int steps = 0;
-  bool opaque = false;                   ///< something certainly opaque is in the way
-  bool through_all = false;              ///< asks for all leaves, not just transparent ones
+  bool opaque = false;       ///< something certainly opaque is in the way
+  bool through_all = false;  ///< asks for all leaves, not just transparent ones
 };
 
 RayTree::RayTree(const ShadingScene& scene) : scene_(scene) {
@@ -176,8 +176,10 @@ void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResu
   if (shades_.size() < count) shades_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Node& node = nodes_[batch_nodes_[i]];
-    nearest_queries_[i] = {node.ray, node.lo, kFar, kAnyOpacity, node.kind,
-                           static_cast<std::uint16_t>(std::min<std::uint32_t>(node.depth, 0xffff)), kNone};
+    nearest_queries_[i] = {node.ray,  node.lo,
+                           kFar,      kAnyOpacity,
+                           node.kind, static_cast<std::uint16_t>(std::min<std::uint32_t>(node.depth, 0xffff)),
+                           kNone};
   }
   const std::span<NearestAnswer> answers(nearest_answers_.data(), count);
   scene_.intersector->nearest(nearest_queries_, answers, scratch_);
@@ -198,7 +200,8 @@ void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResu
   }
 }
 
-/// Misses become background at once; hits are textured and get their ambient part (shading.md 2.2, 2.3 step 1).
+/// Misses become background at once; hits are textured and get their ambient part (shading.md 2.2, 2.3 step
+/// 1).
 void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleResult> results) {
   shade_count_ = 0;
   for (std::size_t i = 0; i < batch_nodes_.size(); ++i) {
@@ -213,8 +216,8 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
       node.distance = kFar;
       node.end = node.ray.at(kFar);
       if (observer_) {
-        observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution, static_cast<int>(node.depth), false, kFar, nullptr,
-                           nullptr});
+        observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution,
+                           static_cast<int>(node.depth), false, kFar, nullptr, nullptr});
       }
       finish(id, results);
       continue;
@@ -240,19 +243,21 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
       result.leaf = answer.hit.leaf;
     }
     if (observer_) {
-      observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution, static_cast<int>(node.depth), true, node.distance,
-                         &answer.hit, &shade.hit});
+      observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution,
+                         static_cast<int>(node.depth), true, node.distance, &answer.hit, &shade.hit});
     }
   }
 }
 
 /// Sections 2.4 steps 1 and 2 and 4: which lights matter at which hit, and the shadow rays they need.
-void RayTree::emit_lights(std::size_t first_light, std::size_t last_light, std::span<const EyeSample> samples) {
+void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
+                          std::span<const EyeSample> samples) {
   lights_.clear();
   shadow_queries_.clear();
   shadow_owner_.clear();
   const RenderSettings& settings = *scene_.settings;
-  const Opacity mask = settings.transparent_shadows && scene_.compiled->has_transparent ? kOpaque : kAnyOpacity;
+  const Opacity mask =
+      settings.transparent_shadows && scene_.compiled->has_transparent ? kOpaque : kAnyOpacity;
   for (std::uint32_t s = 0; s < shade_count_; ++s) {
     const Shade& shade = shades_[s];
     const Node& node = nodes_[shade.node];
@@ -309,7 +314,10 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light, std::
           direction = target / far;
         }
         const RayStart start = secondary_start(world, direction, shade.extent, true);
-        shadow_queries_.push_back({{start.origin, direction, node.ray.time, true}, start.lo, far, mask,
+        shadow_queries_.push_back({{start.origin, direction, node.ray.time, true},
+                                   start.lo,
+                                   far,
+                                   mask,
                                    static_cast<std::uint32_t>(l)});
         shadow_owner_.push_back(static_cast<std::uint32_t>(lights_.size()));
       }
@@ -339,10 +347,11 @@ void RayTree::answer_shadows(std::span<SampleResult> results) {
   if (walk) follow_transparent(false, results);
 }
 
-/// The ordered walk of shading.md 5.3. Where something certainly opaque is in the way, a shadow ray that meets no
-/// transparent leaf is blocked at once; but an opaque surface that coincides with a transparent one is passed with it
-/// (the walk goes on behind it), so those that meet one walk through all leaves. `through_all`: so do all, where a
-/// question about opaque leaves has not been asked because it would cost as much.
+/// The ordered walk of shading.md 5.3. Where something certainly opaque is in the way, a shadow ray that
+/// meets no transparent leaf is blocked at once; but an opaque surface that coincides with a transparent one
+/// is passed with it (the walk goes on behind it), so those that meet one walk through all leaves.
+/// `through_all`: so do all, where a question about opaque leaves has not been asked because it would cost as
+/// much.
 void RayTree::follow_transparent(bool through_all, std::span<SampleResult> results) {
   walks_.clear();
   for (std::uint32_t i = 0; i < shadow_queries_.size(); ++i) {
@@ -413,19 +422,22 @@ void RayTree::combine_lights() {
       if (pending.cosine > 0) {
         node.color += (surface.diffuse * pending.cosine) * pending.color;
         if (surface.specular_exponent >= kEpsilon && pending.highlight > 0) {
-          node.color += (surface.specular * power(pending.highlight, surface.specular_exponent)) * pending.color;
+          node.color +=
+              (surface.specular * power(pending.highlight, surface.specular_exponent)) * pending.color;
         }
       } else {
         node.color += (surface.translucent * -pending.cosine) * pending.color;
         if (surface.transmitted_exponent >= kEpsilon && -pending.highlight > 0) {
-          node.color += (surface.body * power(-pending.highlight, surface.transmitted_exponent)) * pending.color;
+          node.color +=
+              (surface.body * power(-pending.highlight, surface.transmitted_exponent)) * pending.color;
         }
         node.color *= surface.translucency;
       }
     }
     if (observer_) {
       observer_->on_light({shade.node, pending.light, pending.cosine, pending.skipped,
-                           pending.blocked || pending.skipped ? Color{} : pending.color, node.color - before});
+                           pending.blocked || pending.skipped ? Color{} : pending.color,
+                           node.color - before});
     }
   }
 }
@@ -441,7 +453,8 @@ void RayTree::spawn(Shade& shade) {
     if (transmits || any_above(reflect, kEpsilon)) ++counts_.skipped_depth;
     return;
   }
-  const auto child = [&](RayKind kind, Slot slot, const Vec3& direction, const Color& factor, const Color& contribution) {
+  const auto child = [&](RayKind kind, Slot slot, const Vec3& direction, const Color& factor,
+                         const Color& contribution) {
     const std::uint32_t id = allocate();
     Node& node = nodes_[shade.node];
     Node& out = nodes_[id];

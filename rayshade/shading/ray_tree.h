@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The ray tree (shading.md 2 to 5), evaluated without ever waiting inside it (rule 4).
 //
-// Rays are nodes of an arena. A round takes the newest pending nodes (the deepest first, so that what is pending stays
-// bounded by batch x depth whatever the scene), asks the Intersector for their nearest hits in one span, textures the
-// hits, asks for all their shadows in one span per run of lights, adds up the lights in their fixed order, and pushes
-// the secondary rays. A node is finished when its children are; its colour then goes to its parent. All sums have an
-// order of their own, so batches of any size and answers that come later give the same bytes.
+// Rays are nodes of an arena. A round takes the newest pending nodes (the deepest first, so that what is
+// pending stays bounded by batch x depth whatever the scene), asks the Intersector for their nearest hits in
+// one span, textures the hits, asks for all their shadows in one span per run of lights, adds up the lights
+// in their fixed order, and pushes the secondary rays. A node is finished when its children are; its colour
+// then goes to its parent. All sums have an order of their own, so batches of any size and answers that come
+// later give the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -26,14 +27,15 @@ struct ShadingScene {
   const CompiledTextures* textures = nullptr;
   const RenderSettings* settings = nullptr;
   const Intersector* intersector = nullptr;
-  std::vector<ShadingLight> lights;   ///< prepare_lights
+  std::vector<ShadingLight> lights;  ///< prepare_lights
   int frame = 0;
 };
 
-/// One eye ray. `sample` is k, the number of the cell within the pixel; `sample_number` is s (shading.md 7.6).
+/// One eye ray. `sample` is k, the number of the cell within the pixel; `sample_number` is s
+/// (shading.md 7.6).
 struct EyeSample {
   Ray ray;
-  std::uint32_t x = 0, y = 0;         ///< pixel in screen coordinates
+  std::uint32_t x = 0, y = 0;  ///< pixel in screen coordinates
   std::uint32_t sample = 0;
   int sample_number = 0;
 };
@@ -41,15 +43,16 @@ struct EyeSample {
 /// What an eye ray brought back.
 struct SampleResult {
   Color color;
-  bool hit = false;                   ///< alpha
-  double distance = kFar;             ///< of the eye ray's own hit
-  Vec3 normal;                        ///< shading normal there, world space, after textures
+  bool hit = false;        ///< alpha
+  double distance = kFar;  ///< of the eye ray's own hit
+  Vec3 normal;             ///< shading normal there, world space, after textures
   LeafId leaf = 0;
-  std::uint32_t tests = 0;            ///< exact tests by all rays of the tree, shadows included
+  std::uint32_t tests = 0;  ///< exact tests by all rays of the tree, shadows included
   std::uint32_t bounds_tests = 0;
 };
 
-/// Told of everything that happens in the tree of one eye ray (--explain). Calls come in the order of evaluation.
+/// Told of everything that happens in the tree of one eye ray (--explain). Calls come in the order of
+/// evaluation.
 class TreeObserver {
  public:
   struct HitEvent {
@@ -61,14 +64,14 @@ class TreeObserver {
     bool found;
     double distance;
     const Hit* hit;
-    const TexturedHit* surface;       ///< null where nothing was hit
+    const TexturedHit* surface;  ///< null where nothing was hit
   };
   struct LightEvent {
     std::uint32_t node;
-    std::uint32_t light;              ///< index in ShadingScene::lights
+    std::uint32_t light;  ///< index in ShadingScene::lights
     double cosine;
-    bool skipped;                     ///< no shadow ray was needed
-    Color arriving;                   ///< after shadows; black where blocked
+    bool skipped;    ///< no shadow ray was needed
+    Color arriving;  ///< after shadows; black where blocked
     Color added;
   };
   virtual ~TreeObserver() = default;
@@ -117,7 +120,7 @@ class RayTree {
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> free_;
-  std::vector<std::uint32_t> pending_;       ///< a stack
+  std::vector<std::uint32_t> pending_;  ///< a stack
   std::vector<std::uint32_t> batch_nodes_;
   std::vector<NearestQuery> nearest_queries_;
   std::vector<NearestAnswer> nearest_answers_;

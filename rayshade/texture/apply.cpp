@@ -246,8 +246,8 @@ void extend_frame(Evaluation& e, const AffinePair& map) {
   e.frame.inverse = then(map.inverse, e.frame.inverse);
 }
 
-/// The point that textures see: along the ray, in fused arithmetic. On a surface in a plane at which a texture changes,
-/// its rounding shows (D20).
+/// The point that textures see: along the ray, in fused arithmetic. On a surface in a plane at which a
+/// texture changes, its rounding shows (D20).
 Vec3 textured_point(const LocalHit& local) {
   return fused::add_scaled(local.ray.origin, local.t, local.ray.direction);
 }

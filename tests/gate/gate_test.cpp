@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Renders every scene of scenes/ small and compares it with the picture kept beside this file: every pixel must be
-// equal, for pictures depend on nothing but the scene. Where one differs, the new picture and an amplified difference
-// are left in the build folder. RAYSHADE_UPDATE_GOLDEN=1 writes the kept pictures anew; look at them before keeping them.
+// Renders every scene of scenes/ small and compares it with the picture kept beside this file: every pixel
+// must be equal, for pictures depend on nothing but the scene. Where one differs, the new picture and an
+// amplified difference are left in the build folder. RAYSHADE_UPDATE_GOLDEN=1 writes the kept pictures anew;
+// look at them before keeping them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,21 +39,22 @@ TEST_P(GateTest, PictureIsTheKeptOne) {
   const Outcome done =
       run(folder.path(), "-q -R 160 120 -S 2 -N 1 -O '" + picture.string() + "' " + name + ".ray", {}, 120);
   ASSERT_EQ(done.status, 0) << done.err;
-  if (std::getenv("RAYSHADE_UPDATE_GOLDEN")) fs::copy_file(picture, golden, fs::copy_options::overwrite_existing);
+  if (std::getenv("RAYSHADE_UPDATE_GOLDEN"))
+    fs::copy_file(picture, golden, fs::copy_options::overwrite_existing);
   ASSERT_TRUE(fs::exists(golden)) << "there is no kept picture " << golden;
   const Image expected = read_image(read_file(golden));
   const Image found = read_image(read_file(picture));
   ASSERT_EQ(found.width, expected.width);
   ASSERT_EQ(found.height, expected.height);
-  EXPECT_TRUE(found.bytes == expected.bytes) << "compare with: compare_pictures " << golden << " " << picture << " --diff diff.png";
+  EXPECT_TRUE(found.bytes == expected.bytes)
+      << "compare with: compare_pictures " << golden << " " << picture << " --diff diff.png";
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, GateTest, ::testing::ValuesIn(scenes()),
-                         [](const auto& scene) {
-                           std::string name = scene.param;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Scenes, GateTest, ::testing::ValuesIn(scenes()), [](const auto& scene) {
+  std::string name = scene.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 TEST(GateTest, ThereAreScenes) { EXPECT_GE(scenes().size(), 12u); }
 

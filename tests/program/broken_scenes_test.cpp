@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every broken scene of tests/broken ends as its line in EXPECT says: no crash, no hang, no picture, a message with a
-// place. Lines: NAME EXIT-CODE REGULAR-EXPRESSION (searched in standard error).
+// Every broken scene of tests/broken ends as its line in EXPECT says: no crash, no hang, no picture, a
+// message with a place. Lines: NAME EXIT-CODE REGULAR-EXPRESSION (searched in standard error).
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -47,7 +47,8 @@ TEST(BrokenScenesTest, EachEndsAsExpected) {
                                  ? "ulimit -v 4000000;"
                                  : "");
     EXPECT_EQ(done.status, e.status) << done.err;
-    EXPECT_TRUE(std::regex_search(done.err, std::regex(e.pattern))) << "expected: " << e.pattern << "\n" << done.err;
+    EXPECT_TRUE(std::regex_search(done.err, std::regex(e.pattern))) << "expected: " << e.pattern << "\n"
+                                                                    << done.err;
     EXPECT_EQ(fs::exists(picture), e.status == 0);
     fs::remove(picture);
   }

@@ -22,10 +22,14 @@ std::string plain(const std::string& roff) {
         continue;
       }
       const char next = line[++i];
-      if (next == '-' || next == '\'' || next == '`') text += next;
-      else if (next == 'e') text += '\\';
-      else if (next == 'f') i += 1;
-      else if (next != '&') ADD_FAILURE() << "unknown escape \\" << next << " in an example: " << line;
+      if (next == '-' || next == '\'' || next == '`')
+        text += next;
+      else if (next == 'e')
+        text += '\\';
+      else if (next == 'f')
+        i += 1;
+      else if (next != '&')
+        ADD_FAILURE() << "unknown escape \\" << next << " in an example: " << line;
     }
     out += text + "\n";
   }
@@ -45,7 +49,8 @@ TEST(ManualTest, ExamplesOfTheLanguageRender) {
       // Examples name files of the scenes folder.
       Folder folder;
       for (const auto& entry : fs::directory_iterator(std::string(SOURCE_DIR) + "/scenes")) {
-        if (entry.is_regular_file()) fs::create_symlink(entry.path(), folder.path() / entry.path().filename());
+        if (entry.is_regular_file())
+          fs::create_symlink(entry.path(), folder.path() / entry.path().filename());
       }
       const Outcome done = run(folder.path(), "-q -R 24 24 -O example.%d.png", plain(example));
       EXPECT_EQ(done.status, 0) << done.err << "\n" << plain(example);
@@ -65,8 +70,10 @@ TEST(ManualTest, PagesAreClean) {
     if (std::system("command -v man >/dev/null") != 0) GTEST_SKIP() << "man is not installed";
     Folder folder;
     const std::string log = (folder.path() / "log").string();
-    EXPECT_EQ(std::system(("LC_ALL=C.UTF-8 MANROFFSEQ= MANWIDTH=80 man --warnings -E UTF-8 -l '" + page + "' >/dev/null 2>'" +
-                           log + "'").c_str()), 0);
+    EXPECT_EQ(std::system(("LC_ALL=C.UTF-8 MANROFFSEQ= MANWIDTH=80 man --warnings -E UTF-8 -l '" + page +
+                           "' >/dev/null 2>'" + log + "'")
+                              .c_str()),
+              0);
     EXPECT_EQ(read_file(log), "") << page;
   }
 }

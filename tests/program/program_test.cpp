@@ -25,7 +25,9 @@ class ProgramTest : public ::testing::Test {
  protected:
   Folder folder;
   fs::path path(const std::string& name) const { return folder.path() / name; }
-  Outcome go(const std::string& arguments, const std::string& input = {}) { return run(folder.path(), arguments, input); }
+  Outcome go(const std::string& arguments, const std::string& input = {}) {
+    return run(folder.path(), arguments, input);
+  }
 };
 
 TEST_F(ProgramTest, HelpAndVersionGoToStandardOutput) {
@@ -97,7 +99,8 @@ TEST_F(ProgramTest, AnUnwritablePictureKeepsThePreviousOne) {
   EXPECT_EQ(read_file(path("a.png")), before);
   // Nothing else is left behind.
   int files = 0;
-  for (const auto& entry : fs::directory_iterator(folder.path())) files += entry.path().filename().string()[0] != '.';
+  for (const auto& entry : fs::directory_iterator(folder.path()))
+    files += entry.path().filename().string()[0] != '.';
   EXPECT_EQ(files, 1);
 }
 
@@ -152,8 +155,9 @@ TEST_F(ProgramTest, ExplainPrintsTheRayTree) {
 
 TEST_F(ProgramTest, CostMapAndLayersAreWritten) {
   ASSERT_EQ(go("-q --cost-map cost --layers l.pfm -O a.png", kSmall).status, 0);
-  for (const char* name : {"cost.tests.pfm", "cost.tests.png", "cost.microseconds.pfm", "cost.bounds_tests.png",
-                           "l.depth.Z.pfm", "l.normal.X.pfm", "l.object.pfm", "l.samples.pfm"}) {
+  for (const char* name :
+       {"cost.tests.pfm", "cost.tests.png", "cost.microseconds.pfm", "cost.bounds_tests.png", "l.depth.Z.pfm",
+        "l.normal.X.pfm", "l.object.pfm", "l.samples.pfm"}) {
     EXPECT_TRUE(fs::exists(path(name))) << name;
   }
 }
@@ -161,7 +165,8 @@ TEST_F(ProgramTest, CostMapAndLayersAreWritten) {
 TEST_F(ProgramTest, FramesGoToNumberedFilesOrOneAfterTheOther) {
   const std::string moving = std::string(kSmall) + "sphere 1 0 0 0 translate (frame) 0 0\n";
   ASSERT_EQ(go("-q -N 3 -A 5 -O f.%03d.png", moving).status, 0);
-  EXPECT_TRUE(fs::exists(path("f.005.png")) && fs::exists(path("f.006.png")) && fs::exists(path("f.007.png")));
+  EXPECT_TRUE(fs::exists(path("f.005.png")) && fs::exists(path("f.006.png")) &&
+              fs::exists(path("f.007.png")));
   EXPECT_FALSE(fs::exists(path("f.008.png")));
   ASSERT_EQ(go("-q -N 3 -O all.ppm", moving).status, 0);
   ASSERT_EQ(go("-q -O one.ppm", moving).status, 0);
@@ -189,7 +194,8 @@ class SignalTest : public ProgramTest {
     if (child == 0) {
       if (chdir(folder.path().c_str()) != 0) _exit(127);
       if (!freopen("log", "w", stderr)) _exit(127);
-      execl("/bin/sh", "sh", "-c", ("exec '" + program() + "' -O slow.png " + extra + " slow.ray").c_str(), nullptr);
+      execl("/bin/sh", "sh", "-c", ("exec '" + program() + "' -O slow.png " + extra + " slow.ray").c_str(),
+            nullptr);
       _exit(127);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(700));
@@ -198,7 +204,8 @@ class SignalTest : public ProgramTest {
   int wait_for(pid_t child) {
     for (int i = 0; i < 300; ++i) {
       int status = 0;
-      if (waitpid(child, &status, WNOHANG) == child) return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+      if (waitpid(child, &status, WNOHANG) == child)
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
     kill(child, SIGKILL);

@@ -43,7 +43,7 @@ class Folder {
 };
 
 struct Outcome {
-  int status = -1;      ///< exit code; 128 + signal where it was killed
+  int status = -1;  ///< exit code; 128 + signal where it was killed
   std::string out, err;
 };
 
@@ -55,11 +55,12 @@ inline std::string program() {
 
 /// Runs `rayshade ARGUMENTS` (words as a shell reads them) in `folder`, killed after `seconds`, with at most
 /// `kilobytes` of address space where given.
-inline Outcome run(const std::filesystem::path& folder, const std::string& arguments, const std::string& input = {},
-                   int seconds = 60, const std::string& environment = {}) {
+inline Outcome run(const std::filesystem::path& folder, const std::string& arguments,
+                   const std::string& input = {}, int seconds = 60, const std::string& environment = {}) {
   write_file(folder / ".stdin", input);
-  const std::string command = "cd '" + folder.string() + "' && " + environment + " timeout -k 1 " + std::to_string(seconds) +
-                              " '" + program() + "' " + arguments + " <.stdin >.stdout 2>.stderr";
+  const std::string command = "cd '" + folder.string() + "' && " + environment + " timeout -k 1 " +
+                              std::to_string(seconds) + " '" + program() + "' " + arguments +
+                              " <.stdin >.stdout 2>.stderr";
   const int status = std::system(command.c_str());
   Outcome out;
   out.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

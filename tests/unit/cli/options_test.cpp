@@ -26,7 +26,8 @@ TEST(OptionTableTest, LettersAndNamesAreUniqueAndEveryLetterOfTheOriginalIsThere
     EXPECT_TRUE(names.insert(spec.name).second) << spec.name;
     EXPECT_NE(std::string(spec.help), "");
   }
-  for (const char letter : std::string("AaCcDEeFfGghjlmNnOoPpqRrSsTuVvWX")) EXPECT_TRUE(letters.contains(letter)) << letter;
+  for (const char letter : std::string("AaCcDEeFfGghjlmNnOoPpqRrSsTuVvWX"))
+    EXPECT_TRUE(letters.contains(letter)) << letter;
 }
 
 TEST(OptionTableTest, HelpManualAndCompletionNameEveryOption) {
@@ -49,17 +50,26 @@ TEST(ParseOptionsTest, ValuesFollowAsWordsAndMayBeNegative) {
 }
 
 TEST(ParseOptionsTest, MisuseIsAUsageError) {
-  for (const std::vector<std::string>& bad : std::vector<std::vector<std::string>>{
-           {"-S3"}, {"-Z"}, {"-"}, {"-R", "640"}, {"a.ray", "b.ray"}, {"-S", "three"}, {"-S", "65"}, {"--threads=-1"},
-           {"-V", "-x"}, {"--no-such"}, {"--seed=-1"}, {"--intersector", "magic"}, {"-G", "1x"}, {"--memory", "5Q"},
-           {"-S", "99999999999"}}) {
+  for (const std::vector<std::string>& bad : std::vector<std::vector<std::string>>{{"-S3"},
+                                                                                   {"-Z"},
+                                                                                   {"-"},
+                                                                                   {"-R", "640"},
+                                                                                   {"a.ray", "b.ray"},
+                                                                                   {"-S", "three"},
+                                                                                   {"-S", "65"},
+                                                                                   {"--threads=-1"},
+                                                                                   {"-V", "-x"},
+                                                                                   {"--no-such"},
+                                                                                   {"--seed=-1"},
+                                                                                   {"--intersector", "magic"},
+                                                                                   {"-G", "1x"},
+                                                                                   {"--memory", "5Q"},
+                                                                                   {"-S", "99999999999"}}) {
     EXPECT_THROW(parse(bad), UsageError) << bad[0];
   }
 }
 
-TEST(ParseOptionsTest, DashesEndTheOptions) {
-  EXPECT_EQ(parse({"--", "-odd.ray"}).input, "-odd.ray");
-}
+TEST(ParseOptionsTest, DashesEndTheOptions) { EXPECT_EQ(parse({"--", "-odd.ray"}).input, "-odd.ray"); }
 
 TEST(ParseOptionsTest, TogglesToggle) {
   EXPECT_EQ(parse({"-j"}).settings.jitter, false);
@@ -83,7 +93,9 @@ TEST(ParseOptionsTest, PreviewSetsFourThingsThatLaterOptionsMayChange) {
 
 TEST(ParseOptionsTest, SamplesBelowOneBecomeOne) { EXPECT_EQ(parse({"-S", "-4"}).settings.samples, 1); }
 
-TEST(ParseOptionsTest, HelpEndsTheReading) { EXPECT_EQ(parse({"--help", "--nonsense"}).action, Action::kHelp); }
+TEST(ParseOptionsTest, HelpEndsTheReading) {
+  EXPECT_EQ(parse({"--help", "--nonsense"}).action, Action::kHelp);
+}
 
 TEST(ParseBytesTest, TakesSuffixes) {
   EXPECT_EQ(parse_bytes("512", "--memory"), 512u);
@@ -93,7 +105,10 @@ TEST(ParseBytesTest, TakesSuffixes) {
 
 TEST(JsonTest, IsReadBackByAnotherReader) {
   JsonWriter j;
-  j.begin_object().value("text", "a \"quoted\" \\ line\n").value("number", 0.1).value("count", std::uint64_t{1} << 63);
+  j.begin_object()
+      .value("text", "a \"quoted\" \\ line\n")
+      .value("number", 0.1)
+      .value("count", std::uint64_t{1} << 63);
   j.value("nothing", std::nan("")).begin_array("list").value("", 1).value("", 2).end_array();
   j.begin_object("inner").end_object().value("yes", true).end_object();
   const auto read = nlohmann::json::parse(j.text());

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The picture does not depend on who rendered it.
-#include "rayshade/render/renderer.h"
-
 #include <gtest/gtest.h>
 
 #include <thread>
 
 #include "rayshade/lang/parse.h"
+#include "rayshade/render/renderer.h"
 
 namespace rayshade {
 namespace {
@@ -119,8 +118,9 @@ TEST(RenderTest, WindowsAndCropsAreThatPartOfTheWhole) {
     for (int y = s.min_y; y <= s.max_y; ++y) {
       for (int x = s.min_x; x <= s.max_x; ++x) {
         for (int c = 0; c < 4; ++c) {
-          EXPECT_EQ(part.rgba[4 * (static_cast<std::size_t>(y - s.min_y) * s.window_width() + (x - s.min_x)) + c],
-                    whole.rgba[4 * (static_cast<std::size_t>(y) * s.width + x) + c])
+          EXPECT_EQ(
+              part.rgba[4 * (static_cast<std::size_t>(y - s.min_y) * s.window_width() + (x - s.min_x)) + c],
+              whole.rgba[4 * (static_cast<std::size_t>(y) * s.width + x) + c])
               << x << ' ' << y;
         }
       }
@@ -221,8 +221,8 @@ sphere ambient .1 .1 .1 diffuse .5 .5 .5 2 0 0 0
   EXPECT_GT(s.shading.skipped_back_lights, 100u);
   EXPECT_GT(s.shading.skipped_dark_lights, 100u);
   EXPECT_EQ(s.compile.unused_objects, 1u);
-  EXPECT_TRUE(s.without_motion && s.without_lens && s.without_csg && s.without_transparency && s.without_textures &&
-              s.without_atmosphere);
+  EXPECT_TRUE(s.without_motion && s.without_lens && s.without_csg && s.without_transparency &&
+              s.without_textures && s.without_atmosphere);
   EXPECT_EQ(s.shading.reflected_rays + s.shading.transmitted_rays, 0u);
 }
 

@@ -34,7 +34,8 @@ TEST(ChooseFullTest, BorderOfTheScreenIsAlwaysFull) {
   const std::vector<bool> full = choose_full({0, 0, 6, 5}, flat, {0.2, 0.15, 0.3}, 6, 5);
   for (int y = 0; y < 5; ++y) {
     for (int x = 0; x < 6; ++x) {
-      EXPECT_EQ(full[static_cast<std::size_t>(y) * 6 + x], x == 0 || y == 0 || x == 5 || y == 4) << x << ' ' << y;
+      EXPECT_EQ(full[static_cast<std::size_t>(y) * 6 + x], x == 0 || y == 0 || x == 5 || y == 4)
+          << x << ' ' << y;
     }
   }
 }
@@ -47,7 +48,8 @@ TEST(ChooseFullTest, ALoneOddSampleCostsFivePixels) {
     const std::vector<bool> full = choose_full({0, 0, 13, 11}, single, {0.2, 0.15, 0.3}, 13, 11);
     int count = 0;
     for (int y = 1; y < 10; ++y) {
-      for (int x = 1; x < 12; ++x) count += full[static_cast<std::size_t>(y) * 13 + static_cast<std::size_t>(x)];
+      for (int x = 1; x < 12; ++x)
+        count += full[static_cast<std::size_t>(y) * 13 + static_cast<std::size_t>(x)];
     }
     EXPECT_EQ(count, 5) << offset;
     EXPECT_TRUE(full[5 * 13 + static_cast<std::size_t>(at)]) << offset;
@@ -62,12 +64,14 @@ TEST(ChooseFullTest, AnEdgeIsSampledOnBothSidesAllAlong) {
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) single.push_back(bright(x, y) ? Color{1, 1, 1} : Color{.2, .2, .2});
     }
-    const std::vector<bool> full = choose_full({0, 0, width, height}, single, {0.2, 0.15, 0.3}, width, height);
+    const std::vector<bool> full =
+        choose_full({0, 0, width, height}, single, {0.2, 0.15, 0.3}, width, height);
     for (int y = 1; y < height - 1; ++y) {
       for (int x = 1; x < width - 1; ++x) {
         const bool edge = bright(x, y) != bright(x - 1, y) || bright(x, y) != bright(x + 1, y) ||
                           bright(x, y) != bright(x, y - 1) || bright(x, y) != bright(x, y + 1);
-        EXPECT_TRUE(!edge || full[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)]) << slope << ' ' << x << ' ' << y;
+        EXPECT_TRUE(!edge || full[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)])
+            << slope << ' ' << x << ' ' << y;
       }
     }
   }
@@ -88,7 +92,8 @@ TEST(ChooseFullTest, DoesNotDependOnTheRectangle) {
     const PixelRect outer = halo(rect, kRefinementReach, width, height);
     std::vector<Color> part;
     for (int y = outer.y0; y < outer.y1; ++y) {
-      for (int x = outer.x0; x < outer.x1; ++x) part.push_back(screen[static_cast<std::size_t>(y) * width + x]);
+      for (int x = outer.x0; x < outer.x1; ++x)
+        part.push_back(screen[static_cast<std::size_t>(y) * width + x]);
     }
     const std::vector<bool> full = choose_full(rect, part, threshold, width, height);
     std::size_t i = 0;

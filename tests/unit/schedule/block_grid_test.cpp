@@ -10,15 +10,17 @@ namespace rayshade {
 namespace {
 
 TEST(BlockGridTest, BlocksTileThePictureExactlyOnce) {
-  for (const auto& [width, height, side] : {std::array{1, 1, 32}, std::array{64, 64, 32}, std::array{65, 31, 16},
-                                            std::array{7, 100, 1}, std::array{33, 33, 64}}) {
+  for (const auto& [width, height, side] :
+       {std::array{1, 1, 32}, std::array{64, 64, 32}, std::array{65, 31, 16}, std::array{7, 100, 1},
+        std::array{33, 33, 64}}) {
     const BlockGrid grid(width, height, side);
     std::vector<int> covered(static_cast<std::size_t>(width) * height);
     for (std::int64_t i = 0; i < grid.count(); ++i) {
       const Block block = grid.block(i);
       EXPECT_EQ(block.number, i);
       for (int y = 0; y < block.height; ++y) {
-        for (int x = 0; x < block.width; ++x) ++covered[static_cast<std::size_t>(block.y + y) * width + block.x + x];
+        for (int x = 0; x < block.width; ++x)
+          ++covered[static_cast<std::size_t>(block.y + y) * width + block.x + x];
       }
     }
     for (const int times : covered) EXPECT_EQ(times, 1);

@@ -37,7 +37,8 @@ TEST(SpotTest, RampRunsFromTheOuterToTheInnerAngle) {
 }
 
 TEST(SpotTest, WithoutConeOnlyTheExponentCounts) {
-  for (const auto& [inner, outer] : {std::pair{180.0, 180.0}, std::pair{100.0, 120.0}, std::pair{90.0, 95.0}}) {
+  for (const auto& [inner, outer] :
+       {std::pair{180.0, 180.0}, std::pair{100.0, 120.0}, std::pair{90.0, 95.0}}) {
     const ShadingLight light = prepared(spot(2, inner, outer));
     EXPECT_DOUBLE_EQ(spot_factor(light, 0.5), 0.25);
     EXPECT_EQ(spot_factor(light, 0), 0);
