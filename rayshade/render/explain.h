@@ -10,11 +10,11 @@
 
 namespace rayshade {
 
-/// Collects what happens in a ray tree, and prints it as an indented tree: one paragraph per ray with its hit,
-/// surface, lights and colour, children below their parents.
+/// Collects what happens in a ray tree, and prints it as an indented tree: one paragraph per ray with its
+/// hit, surface, lights and colour, children below their parents.
 class ExplainText : public TreeObserver {
  public:
-  ExplainText(const FrameScene& frame, const Scene& scene) : frame_(frame), scene_(scene) {}
+  explicit ExplainText(const FrameScene& frame) : frame_(frame) {}
   void on_hit(const HitEvent& event) override;
   void on_light(const LightEvent& event) override;
   void on_finish(std::uint32_t node, const Color& color) override;
@@ -33,9 +33,8 @@ class ExplainText : public TreeObserver {
   std::string object_name(const Hit& hit) const;
 
   const FrameScene& frame_;
-  const Scene& scene_;
   std::vector<Entry> entries_;
-  std::map<std::uint32_t, std::size_t> open_;   ///< tree nodes are reused; these are alive
+  std::map<std::uint32_t, std::size_t> open_;  ///< tree nodes are reused; these are alive
 };
 
 }  // namespace rayshade

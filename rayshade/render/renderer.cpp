@@ -19,7 +19,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 double thread_cpu_seconds() {
   timespec now{};
@@ -51,16 +53,26 @@ class LayerSpans {
  public:
   explicit LayerSpans(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
-      if (name == "depth.Z") fields_.push_back(offsetof(BlockPixels::Layer, depth));
-      else if (name == "normal.X") fields_.push_back(offsetof(BlockPixels::Layer, normal));
-      else if (name == "normal.Y") fields_.push_back(offsetof(BlockPixels::Layer, normal) + sizeof(float));
-      else if (name == "normal.Z") fields_.push_back(offsetof(BlockPixels::Layer, normal) + 2 * sizeof(float));
-      else if (name == "object") fields_.push_back(offsetof(BlockPixels::Layer, object));
-      else if (name == "samples") fields_.push_back(offsetof(BlockPixels::Layer, samples));
-      else if (name == "tests") fields_.push_back(offsetof(BlockPixels::Layer, tests));
-      else if (name == "bounds_tests") fields_.push_back(offsetof(BlockPixels::Layer, bounds_tests));
-      else if (name == "microseconds") fields_.push_back(offsetof(BlockPixels::Layer, microseconds));
-      else throw std::invalid_argument("unknown layer " + name);
+      if (name == "depth.Z")
+        fields_.push_back(offsetof(BlockPixels::Layer, depth));
+      else if (name == "normal.X")
+        fields_.push_back(offsetof(BlockPixels::Layer, normal));
+      else if (name == "normal.Y")
+        fields_.push_back(offsetof(BlockPixels::Layer, normal) + sizeof(float));
+      else if (name == "normal.Z")
+        fields_.push_back(offsetof(BlockPixels::Layer, normal) + 2 * sizeof(float));
+      else if (name == "object")
+        fields_.push_back(offsetof(BlockPixels::Layer, object));
+      else if (name == "samples")
+        fields_.push_back(offsetof(BlockPixels::Layer, samples));
+      else if (name == "tests")
+        fields_.push_back(offsetof(BlockPixels::Layer, tests));
+      else if (name == "bounds_tests")
+        fields_.push_back(offsetof(BlockPixels::Layer, bounds_tests));
+      else if (name == "microseconds")
+        fields_.push_back(offsetof(BlockPixels::Layer, microseconds));
+      else
+        throw std::invalid_argument("unknown layer " + name);
     }
     values_.resize(fields_.size());
   }
@@ -70,7 +82,8 @@ class LayerSpans {
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       values_[i].clear();
       for (const BlockPixels::Layer& layer : block.layers) {
-        values_[i].push_back(*reinterpret_cast<const float*>(reinterpret_cast<const char*>(&layer) + fields_[i]));
+        values_[i].push_back(
+            *reinterpret_cast<const float*>(reinterpret_cast<const char*>(&layer) + fields_[i]));
       }
       spans.emplace_back(values_[i]);
     }
@@ -95,7 +108,8 @@ struct Crew {
 
 }  // namespace
 
-Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider& provider, const RenderOptions& options)
+Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider& provider,
+                   const RenderOptions& options)
     : scene_(scene), settings_(settings), options_(options) {
   const Clock::time_point start = Clock::now();
   located([&] {
@@ -184,7 +198,8 @@ bool Renderer::render_frame(int frame, FrameBuffer& picture, const std::atomic<b
     statistics_.trace.add(renderer.tree().scratch().counts);
     statistics_.shading.add(renderer.tree().counts());
     statistics_.sampling.add(renderer.counts());
-    statistics_.peak_tree_nodes = std::max<std::uint64_t>(statistics_.peak_tree_nodes, renderer.tree().peak_nodes());
+    statistics_.peak_tree_nodes =
+        std::max<std::uint64_t>(statistics_.peak_tree_nodes, renderer.tree().peak_nodes());
     statistics_.cpu_seconds += thread_cpu_seconds() - cpu;
     --crew.working;
     crew.news.notify_all();
@@ -219,7 +234,7 @@ std::string Renderer::explain(int frame, int x, int y) {
   prepare_frame(frame);
   BlockRenderer renderer(frame_);
   renderer.tree().scratch().brute_force = options_.brute_force;
-  ExplainText text(frame_, scene_);
+  ExplainText text(frame_);
   located([&] { renderer.observe(x, y, text); });
   return text.text();
 }
