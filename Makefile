@@ -26,7 +26,7 @@ define need
 	@missing=""; for p in $(1); do \
 	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'install ok installed' || missing="$$missing $$p"; done; \
 	if [ -n "$$missing" ]; then echo "installing:$$missing"; \
-	  $(SUDO) apt-get update -q && DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y -q --no-install-recommends $$missing; fi
+	  $(SUDO) apt-get update -q && $(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $$missing; fi
 endef
 
 packages:
@@ -40,10 +40,10 @@ lint-packages:
 
 build: packages ## build the programs into build/bin
 	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DCMAKE_INSTALL_PREFIX=$(PREFIX)
-	cmake --build $(BUILD) -j $(JOBS) --target rayshade spd
+	cmake --build $(BUILD) -j $(JOBS)
 
 run: build ## build, render a scene to a PNG and say where it is
-	cd scenes && ../$(BUILD)/bin/rayshade -O ../hero.png hero.ray
+	cd scenes && $(abspath $(BUILD))/bin/rayshade -O $(CURDIR)/hero.png hero.ray
 	@echo; echo "The picture is $(CURDIR)/hero.png"
 
 check: test-packages ## build everything and run all tests
@@ -75,7 +75,7 @@ install: build ## install programs, scenes, manuals and completion under PREFIX
 package: packages ## build a Debian package in build/
 	$(call need,dpkg-dev lintian)
 	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DCMAKE_INSTALL_PREFIX=/usr
-	cmake --build $(BUILD) -j $(JOBS) --target rayshade spd
+	cmake --build $(BUILD) -j $(JOBS)
 	cd $(BUILD) && cpack -G DEB
 	@ls -l $(BUILD)/*.deb
 
@@ -95,4 +95,4 @@ fuzz: lint-packages ## fuzz the language for ten minutes
 	build-fuzz/bin/parse_fuzz -max_total_time=600 -timeout=10 -rss_limit_mb=2048 build-fuzz/corpus tests/fuzz/corpus
 
 clean: ## remove what was built
-	rm -rf build build-*
+	rm -rf $(BUILD) build-* hero.png

@@ -10,6 +10,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(rayshade_flags INTERFACE -Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow
     -Wno-array-bounds)
 endif()
+target_link_options(rayshade_flags INTERFACE -Wl,-z,relro,-z,now)
 target_include_directories(rayshade_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
 target_compile_definitions(rayshade_flags INTERFACE FMT_HEADER_ONLY=1)
 if(RAYSHADE_SANITIZE)
