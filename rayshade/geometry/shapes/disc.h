@@ -21,7 +21,7 @@ class Disc {
     const double t = -dot(normal_, from_center) / slope;
     if (!(t >= lo && t <= hi)) return false;
     if (!(length_squared(from_center + t * ray.direction) <= radius_ * radius_)) return false;
-    if (edge_on(slope, 1, dot(ray.direction, ray.direction))) return false;
+    if (!hit_squarely(t, slope, 1, dot(ray.direction, ray.direction))) return false;
     hit.t = t;
     return true;
   }

@@ -2,16 +2,21 @@
 // What plane, disc, triangle and polygon share.
 #pragma once
 
+#include <cmath>
+
 #include "rayshade/geometry/shapes/rounding.h"
 #include "rayshade/math/vec.h"
 
 namespace rayshade {
 
-/// Edge-on rejection (objects.md 2): a flat shape is missed where |normal . direction| < kEpsilon for unit
-/// vectors. Takes the squares of their lengths, so that neither needs to be of unit length.
-inline bool edge_on(double normal_dot_direction, double normal_square, double direction_square) {
-  return !(normal_dot_direction * normal_dot_direction >=
-           kEpsilon * kEpsilon * normal_square * direction_square);
+/// Whether a flat shape may be hit at `t` (objects.md 2): not where it is seen edge-on, |normal . direction|
+/// < kEpsilon for unit vectors (this takes the squares of their lengths, so that neither needs to be of unit
+/// length), and not where the numbers are beyond all measure.
+inline bool hit_squarely(double t, double normal_dot_direction, double normal_square,
+                         double direction_square) {
+  return normal_dot_direction * normal_dot_direction >=
+             kEpsilon * kEpsilon * normal_square * direction_square &&
+         std::isfinite(t);
 }
 
 /// A point moved onto a plane, and a bound on the distance that remains.

@@ -17,7 +17,7 @@ class Plane {
   bool intersect(const Ray& ray, double lo, double hi, ShapeHit& hit) const {
     const double slope = dot(normal_, ray.direction);
     const double t = dot(normal_, point_ - ray.origin) / slope;
-    if (!(t > lo && t <= hi) || edge_on(slope, 1, dot(ray.direction, ray.direction))) return false;
+    if (!(t > lo && t <= hi) || !hit_squarely(t, slope, 1, dot(ray.direction, ray.direction))) return false;
     hit.t = t;
     return true;
   }

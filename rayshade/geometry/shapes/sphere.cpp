@@ -71,7 +71,7 @@ TextureCoordinates Sphere::texture_coordinates(const Vec3& x, const Vec3& /*faci
 
 Bounds3 Sphere::bounds() const {
   const Vec3 r{radius_, radius_, radius_};
-  return {center_ - r, center_ + r};
+  return grown({center_ - r, center_ + r}, kRoundoff * (max_abs(center_) + radius_));
 }
 
 }  // namespace rayshade

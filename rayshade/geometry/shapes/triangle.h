@@ -142,7 +142,7 @@ inline bool Triangle::intersect(const Ray& ray, double lo, double hi, ShapeHit& 
   const Vec3 n = cross_product();
   const double slope = dot(n, d);
   const double t = dot(n, p_[0] - ray.origin) / slope;
-  if (!(t >= lo && t <= hi) || edge_on(slope, dot(n, n), dot(d, d))) return false;
+  if (!(t >= lo && t <= hi) || !hit_squarely(t, slope, dot(n, n), dot(d, d))) return false;
   const double sum = w[0] + w[1] + w[2];
   if (!(std::fabs(sum) > 0)) return false;
   hit.t = t;
