@@ -232,12 +232,10 @@ class ObjectWriter {
 
 }  // namespace
 
-std::string canonical_text(const Scene& scene) {
-  SurfaceNames surfaces;
-  TextWriter objects;
-  ObjectWriter writer(scene, objects, surfaces);
-  writer.write_named_objects();
-  writer.write_world();
+namespace {
+
+/// The settings, lights and surfaces, which stand before the objects that use them.
+std::string head_text(const Scene& scene, const SurfaceNames& surfaces) {
   TextWriter head;
   write_settings(head, scene.settings);
   for (const Light& light : scene.lights) {
@@ -245,9 +243,32 @@ std::string canonical_text(const Scene& scene) {
     head.end_line();
   }
   surfaces.write_definitions(head);
-  return head.text() + objects.text();
+  return head.text();
 }
 
-std::string scene_hash(const Scene& scene) { return hash128(canonical_text(scene)).text(); }
+void write_objects(const Scene& scene, TextWriter& out, SurfaceNames& surfaces) {
+  ObjectWriter writer(scene, out, surfaces);
+  writer.write_named_objects();
+  writer.write_world();
+}
+
+}  // namespace
+
+std::string canonical_text(const Scene& scene) {
+  SurfaceNames surfaces;
+  TextWriter objects;
+  write_objects(scene, objects, surfaces);
+  return head_text(scene, surfaces) + objects.text();
+}
+
+// The objects' text goes by in pieces, each leaving its hash: a scene of millions of objects is never held as text.
+std::string scene_hash(const Scene& scene) {
+  constexpr std::size_t kPiece = 1 << 20;
+  SurfaceNames surfaces;
+  std::string digests;
+  TextWriter objects(kPiece, [&](const std::string& piece) { digests += hash128(piece).text(); });
+  write_objects(scene, objects, surfaces);
+  return hash128(head_text(scene, surfaces) + digests + hash128(objects.text()).text()).text();
+}
 
 }  // namespace rayshade

@@ -53,8 +53,8 @@ class Expression {
   static constexpr int kMaxNodes = 100000;
   static constexpr int kMaxNesting = 2000;
 
-  Expression(double constant = 0)
-      : constant_(constant) {}  // NOLINT(google-explicit-constructor): numbers are expressions
+  // NOLINTNEXTLINE(google-explicit-constructor): numbers are expressions
+  Expression(double constant = 0) : constant_(constant) {}
   static Expression time();
   static Expression frame();
   /// An operation over its operands (unary operations take one, kLinear four). Folded to a constant when all

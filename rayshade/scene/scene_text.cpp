@@ -133,6 +133,10 @@ void TextWriter::optional_vec(std::string_view keyword, const std::optional<Vec3
 }
 
 void TextWriter::end_line(int depth) {
+  if (take_ && text_.size() >= piece_) {
+    take_(text_);
+    text_.clear();
+  }
   text_ += '\n';
   text_.append(static_cast<std::size_t>(2 * std::min(depth, 20)), ' ');
 }

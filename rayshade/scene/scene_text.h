@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,10 @@ bool is_language_name(std::string_view text);
 /// Appends words and numbers to a text, one blank between them.
 class TextWriter {
  public:
+  TextWriter() = default;
+  /// Hands the text over, and forgets it, at the first line end after every `piece` bytes: for who needs it only once.
+  TextWriter(std::size_t piece, std::function<void(const std::string&)> take)
+      : piece_(piece), take_(std::move(take)) {}
   void word(std::string_view text);
   void number(double value);
   void integer(std::int64_t value);
@@ -41,6 +46,8 @@ class TextWriter {
  private:
   void separate();
   std::string text_;
+  std::size_t piece_ = 0;
+  std::function<void(const std::string&)> take_;
 };
 
 /// Names for surfaces of equal value, numbered in the order of first use.

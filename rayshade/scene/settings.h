@@ -115,7 +115,8 @@ struct RenderSettings {
 /// A combination of settings that cannot be rendered (window outside the screen, view along up, samples out
 /// of range, absurd sizes, stereo without eye separation ...).
 struct SettingsError : std::runtime_error {
-  SettingsError(const std::string& what, Location where = {}) : std::runtime_error(what), location(where) {}
+  explicit SettingsError(const std::string& what, Location where = {})
+      : std::runtime_error(what), location(where) {}
   Location location;
 };
 
