@@ -9,7 +9,7 @@ SUDO    := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 # What the program is built from, and what only the tests and the extras need.
 PACKAGES       := g++ cmake ninja-build flex bison pkg-config libpng-dev zlib1g-dev libfmt-dev libsleef-dev \
                   librandom123-dev libopenexr-dev
-TEST_PACKAGES  := libgtest-dev libgmock-dev nlohmann-json3-dev man-db groff-base
+TEST_PACKAGES  := libgtest-dev libgmock-dev nlohmann-json3-dev libboost-dev man-db groff-base
 BENCH_PACKAGES := libbenchmark-dev time
 LINT_PACKAGES  := clang clang-tidy clang-format libclang-rt-14-dev
 
@@ -72,11 +72,13 @@ bench: bench-packages ## run the benchmarks (speed as ratios within one run)
 install: build ## install programs, scenes, manuals and completion under PREFIX
 	$(SUDO) cmake --install $(BUILD) --prefix $(PREFIX)
 
-package: packages ## build a Debian package in build/
-	$(call need,dpkg-dev lintian)
+package: packages ## build a Debian package in build/ and check it
+	$(call need,dpkg-dev file lintian)
 	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DCMAKE_INSTALL_PREFIX=/usr
 	cmake --build $(BUILD) -j $(JOBS)
+	rm -f $(BUILD)/*.deb
 	cd $(BUILD) && cpack -G DEB
+	lintian --allow-root --fail-on error,warning $(BUILD)/*.deb
 	@ls -l $(BUILD)/*.deb
 
 lint: lint-packages ## clang-format, clang-tidy, manual pages
