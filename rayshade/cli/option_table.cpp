@@ -356,14 +356,15 @@ std::vector<OptionSpec> make_table() {
                "Write all statistics to FILE as JSON.",
                [](Options& o, Values v) { o.stats_file = v[0]; },
                {"FILE"}});
-  t.push_back({0,
-               "cost-map",
-               {"FILE"},
-               kReport,
-               "Write intersection tests and microseconds per pixel as a float picture (FILE, .pfm or .exr), "
-               "and a PNG in false colours beside it.",
-               [](Options& o, Values v) { o.cost_map = v[0]; },
-               {"FILE"}});
+  t.push_back(
+      {0,
+       "cost-map",
+       {"FILE"},
+       kReport,
+       "Write intersection tests, box tests and microseconds of each pixel as float pictures FILE.tests.pfm, "
+       "FILE.bounds_tests.pfm and FILE.microseconds.pfm, and each in false colours as a PNG beside it.",
+       [](Options& o, Values v) { o.cost_map = v[0]; },
+       {"FILE"}});
   t.push_back({0,
                "explain",
                {"X", "Y"},
