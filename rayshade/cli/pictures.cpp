@@ -103,7 +103,7 @@ void PictureOutput::write_frame(const FrameBuffer& picture, int frame) {
 
 std::string PictureOutput::write_partial(const FrameBuffer& picture, int frame) {
   if (name_ == "-") return {};
-  const std::string partial = partial_name(file_name(name_, frame));
+  std::string partial = partial_name(file_name(name_, frame));
   OutputFile file(partial);
   if (file.direct()) return {};
   write_picture(picture, format_, info(frame), file);

@@ -106,8 +106,8 @@ std::array<std::uint8_t, 3> false_color(double t) {
   const double part = at - step;
   std::array<std::uint8_t, 3> color{};
   for (std::size_t c = 0; c < 3; ++c)
-    color[c] =
-        static_cast<std::uint8_t>(kScale[step][c] + part * (kScale[step + 1][c] - kScale[step][c]) + 0.5);
+    color[c] = static_cast<std::uint8_t>(
+        std::lround(kScale[step][c] + part * (kScale[step + 1][c] - kScale[step][c])));
   return color;
 }
 

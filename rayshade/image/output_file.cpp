@@ -40,7 +40,8 @@ std::string follow_links(std::string path) {
     if (length < 0 || length == static_cast<ssize_t>(sizeof link)) return path;
     const std::string to(link, static_cast<std::size_t>(length));
     const std::size_t slash = path.rfind('/');
-    path = to.starts_with('/') || slash == std::string::npos ? to : path.substr(0, slash + 1) + to;
+    path.resize(to.starts_with('/') || slash == std::string::npos ? 0 : slash + 1);
+    path.append(to);
   }
   return path;
 }

@@ -112,15 +112,19 @@ class PngFile {
   png_infop info_ = nullptr;
 };
 
+// Size of a difference modulo 256, read as a signed byte.
+std::uint64_t magnitude(int difference) {
+  const auto byte = static_cast<std::uint8_t>(difference);
+  return byte < 128U ? byte : 256U - byte;
+}
+
 // The sum of absolute differences to the left and to the upper neighbour tells which of the two filters
 // leaves the smaller numbers; a seventh of the samples tells it as well as all.
 int choose_filter(const std::uint8_t* row, const std::uint8_t* above, std::size_t size, std::size_t pixel) {
   std::uint64_t left = 0, up = 0;
   for (std::size_t i = pixel; i < size; i += 7) {
-    const int a = static_cast<std::int8_t>(row[i] - row[i - pixel]);
-    const int b = static_cast<std::int8_t>(row[i] - above[i]);
-    left += static_cast<std::uint64_t>(a < 0 ? -a : a);
-    up += static_cast<std::uint64_t>(b < 0 ? -b : b);
+    left += magnitude(row[i] - row[i - pixel]);
+    up += magnitude(row[i] - above[i]);
   }
   return up <= left ? PNG_FILTER_UP : PNG_FILTER_SUB;
 }

@@ -108,7 +108,8 @@ void write_header(const FrameBuffer& picture, const PictureInfo& info, int color
   const ColorEncoding& encoding = picture.encoder().encoding();
   add(encoding.srgb ? std::string("color_encoding=sRGB") : fmt::format("display_gamma={}", encoding.gamma));
   for (const auto& [key, value] : info.provenance) {
-    std::string comment = key + "=" + value;
+    std::string comment = key;
+    comment.append("=").append(value);
     std::replace(comment.begin(), comment.end(), '\0', ' ');
     add(comment);
   }

@@ -117,7 +117,7 @@ void ExplainText::print(std::size_t number, int depth, std::string& out) const {
   const Entry& entry = entries_[number];
   const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
   out += indent + entry.head + "\n";
-  for (const std::string& line : entry.lines) out += indent + "  " + line + "\n";
+  for (const std::string& line : entry.lines) out.append(indent).append("  ").append(line).append("\n");
   for (const std::size_t child : entry.children) print(child, depth + 1, out);
   out += indent + "  colour " + text_of(entry.color) + "\n";
 }

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -41,7 +42,7 @@ int quota_cpus() {
   std::string quota;
   double period = 0;
   if (!(in >> quota >> period) || quota == "max" || period <= 0) return 0;
-  return std::max(1, static_cast<int>(std::atof(quota.c_str()) / period + 0.5));
+  return std::max(1, static_cast<int>(std::lround(std::atof(quota.c_str()) / period)));
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ struct Crew {
 
 Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider& provider,
                    const RenderOptions& options)
-    : scene_(scene), settings_(settings), options_(options) {
+    : settings_(settings), options_(options) {
   const Clock::time_point start = Clock::now();
   located([&] {
     CompileOptions compile;
@@ -207,6 +207,7 @@ bool Renderer::render_frame(int frame, FrameBuffer& picture, const std::atomic<b
 
   {
     std::vector<std::jthread> crew_threads;
+    crew_threads.reserve(static_cast<std::size_t>(threads));
     for (int i = 0; i < threads; ++i) crew_threads.emplace_back(work);
     std::unique_lock lock(crew.mutex);
     std::size_t top_row = 0;

@@ -63,7 +63,6 @@ class Renderer {
  private:
   void prepare_frame(int frame);
 
-  const Scene& scene_;
   RenderSettings settings_;
   RenderOptions options_;
   std::unique_ptr<CompiledScene> compiled_;

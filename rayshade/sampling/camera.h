@@ -27,8 +27,9 @@ class Camera {
   /// The ray of sample number `s` through the screen point (u, v) and the point of the lens cell of `s` that
   /// `xi` and `zeta` in [0, 1) choose. Points at the focal distance from the eye are sharp.
   Ray lens_ray(double u, double v, int s, double xi, double zeta) const {
-    const double p = -1 + (s % side_ + xi) * 2 / side_;
-    const double q = -1 + (s / side_ + zeta) * 2 / side_;
+    const int column = s % side_, row = s / side_;
+    const double p = -1 + (column + xi) * 2 / side_;
+    const double q = -1 + (row + zeta) * 2 / side_;
     const Vec3 shift = aperture_ * (p * right_ + q * up_);
     return {eye_ + shift, normalize(focal_distance_ * direction(u, v) - shift)};
   }

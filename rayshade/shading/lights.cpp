@@ -102,8 +102,9 @@ Vec3 extended_target(const ShadingLight& light, const Vec3& point, int sample_nu
   Vec3 e1, e2;
   coordinate_system(center, e1, e2);
   const double step = 2 * light.radius / side;
-  const double v = -light.radius + (sample_number % side + xi) * step;
-  const double w = -light.radius + (sample_number / side + zeta) * step;
+  const int column = sample_number % side, row = sample_number / side;
+  const double v = -light.radius + (column + xi) * step;
+  const double w = -light.radius + (row + zeta) * step;
   return center + w * e1 + v * e2;
 }
 

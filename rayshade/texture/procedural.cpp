@@ -62,8 +62,9 @@ Vec3 gloss_normal(const Vec3& n, double glossiness, const std::array<double, 2>&
   double x = 2 * draws[0] - 1, y = 2 * draws[1] - 1;
   if (sample_number >= 0 && samples_per_side > 0) {
     const double step = 2.0 / samples_per_side;
-    x = draws[0] * step - 1 + (sample_number % samples_per_side) * step;
-    y = draws[1] * step - 1 + (sample_number / samples_per_side) * step;
+    const int column = sample_number % samples_per_side, row = sample_number / samples_per_side;
+    x = draws[0] * step - 1 + column * step;
+    y = draws[1] * step - 1 + row * step;
   }
   return normalize_above_epsilon(n + (k * x) * u + (k * y) * w);
 }

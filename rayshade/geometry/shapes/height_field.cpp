@@ -166,8 +166,9 @@ bool HeightField::intersect(const Ray& ray, double lo, double hi, ShapeHit& hit)
   }
   if (!walk.found) return false;
   const std::uint32_t cell = walk.best_part / 2;
-  const double x = walk.origin.x + walk.best_x * d.x - cell % cells_;
-  const double y = walk.origin.y + walk.best_x * d.y - cell / cells_;
+  const std::uint32_t column = cell % cells_, row = cell / cells_;
+  const double x = walk.origin.x + walk.best_x * d.x - column;
+  const double y = walk.origin.y + walk.best_x * d.y - row;
   hit = {walk.best_t, std::clamp(x, 0.0, 1.0), std::clamp(y, 0.0, 1.0), walk.best_part};
   return true;
 }
