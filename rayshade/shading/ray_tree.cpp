@@ -142,26 +142,49 @@ std::uint32_t RayTree::allocate() {
 void RayTree::trace(std::span<const EyeSample> samples, std::span<SampleResult> results) {
   counts_.eye_rays += samples.size();
   for (std::size_t first = 0; first < samples.size(); first += batch_) {
-    const std::size_t count = std::min(batch_, samples.size() - first);
-    for (std::size_t i = first + count; i-- > first;) {
-      const std::uint32_t id = allocate();
-      Node& node = nodes_[id];
-      node.ray = samples[i].ray;
-      node.lo = kEpsilon;
-      node.contribution = {1, 1, 1};
-      node.path = kRootPath;
-      node.parent = kNone;
-      node.root = static_cast<std::uint32_t>(i);
-      node.depth = 0;
-      node.kind = RayKind::kEye;
-      node.slot = kTransmittedSlot;
-      node.children = node.waiting = 0;
-      node.medium = kNone;
-      results[i] = SampleResult{};
-      pending_.push_back(id);
-    }
+    start_batch(first, std::min(batch_, samples.size() - first), samples, results);
     while (!pending_.empty()) run_batch(samples, results);
   }
+}
+
+/// Eye rays are asked for before they become nodes: one that hits nothing never does.
+void RayTree::start_batch(std::size_t first, std::size_t count, std::span<const EyeSample> samples,
+                          std::span<SampleResult> results) {
+  nearest_queries_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    nearest_queries_[i] = {samples[first + i].ray, kEpsilon, kFar, kAnyOpacity, RayKind::kEye, 0, kNone};
+  }
+  ask_nearest();
+  batch_nodes_.clear();
+  batch_answers_.clear();
+  const bool misses_are_background = scene_.settings->effects.empty() && !observer_;
+  for (std::size_t i = 0; i < count; ++i) {
+    SampleResult& result = results[first + i];
+    result = SampleResult{};
+    const NearestAnswer& answer = nearest_answers_[i];
+    if (!answer.found && misses_are_background) {
+      result.color = scene_.settings->background;
+      result.tests = answer.tests;
+      result.bounds_tests = answer.bounds_tests;
+      continue;
+    }
+    const std::uint32_t id = allocate();
+    Node& node = nodes_[id];
+    node.ray = samples[first + i].ray;
+    node.lo = kEpsilon;
+    node.contribution = {1, 1, 1};
+    node.path = kRootPath;
+    node.parent = kNone;
+    node.root = static_cast<std::uint32_t>(first + i);
+    node.depth = 0;
+    node.kind = RayKind::kEye;
+    node.slot = kTransmittedSlot;
+    node.children = node.waiting = 0;
+    node.medium = kNone;
+    batch_nodes_.push_back(id);
+    batch_answers_.push_back(static_cast<std::uint32_t>(i));
+  }
+  shade_batch(samples, results);
 }
 
 void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResult> results) {
@@ -172,18 +195,26 @@ void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResu
   pending_.resize(pending_.size() - count);
 
   nearest_queries_.resize(count);
-  if (nearest_answers_.size() < count) nearest_answers_.resize(count);
-  if (shades_.size() < count) shades_.resize(count);
+  batch_answers_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Node& node = nodes_[batch_nodes_[i]];
-    nearest_queries_[i] = {node.ray,  node.lo,
-                           kFar,      kAnyOpacity,
-                           node.kind, static_cast<std::uint16_t>(std::min<std::uint32_t>(node.depth, 0xffff)),
-                           kNone};
+    const auto depth = static_cast<std::uint16_t>(std::min<std::uint32_t>(node.depth, 0xffff));
+    nearest_queries_[i] = {node.ray, node.lo, kFar, kAnyOpacity, node.kind, depth, kNone};
+    batch_answers_[i] = static_cast<std::uint32_t>(i);
   }
-  const std::span<NearestAnswer> answers(nearest_answers_.data(), count);
-  scene_.intersector->nearest(nearest_queries_, answers, scratch_);
+  ask_nearest();
+  shade_batch(samples, results);
+}
 
+void RayTree::ask_nearest() {
+  const std::size_t count = nearest_queries_.size();
+  if (nearest_answers_.size() < count) nearest_answers_.resize(count);
+  scene_.intersector->nearest(nearest_queries_, {nearest_answers_.data(), count}, scratch_);
+}
+
+/// From the answers of a batch to its lights and its secondary rays.
+void RayTree::shade_batch(std::span<const EyeSample> samples, std::span<SampleResult> results) {
+  if (shades_.size() < batch_nodes_.size()) shades_.resize(batch_nodes_.size());
   shade_hits(samples, results);
   const std::size_t lights = scene_.lights.size();
   if (shade_count_ > 0) {
@@ -207,7 +238,7 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
   for (std::size_t i = 0; i < batch_nodes_.size(); ++i) {
     const std::uint32_t id = batch_nodes_[i];
     Node& node = nodes_[id];
-    const NearestAnswer& answer = nearest_answers_[i];
+    const NearestAnswer& answer = nearest_answers_[batch_answers_[i]];
     SampleResult& result = results[node.root];
     result.tests += answer.tests;
     result.bounds_tests += answer.bounds_tests;

@@ -103,7 +103,11 @@ class RayTree {
   struct Walk;
 
   std::uint32_t allocate();
+  void start_batch(std::size_t first, std::size_t count, std::span<const EyeSample> samples,
+                   std::span<SampleResult> results);
   void run_batch(std::span<const EyeSample> samples, std::span<SampleResult> results);
+  void ask_nearest();
+  void shade_batch(std::span<const EyeSample> samples, std::span<SampleResult> results);
   void shade_hits(std::span<const EyeSample> samples, std::span<SampleResult> results);
   void emit_lights(std::size_t first_light, std::size_t last_light, std::span<const EyeSample> samples);
   void answer_shadows(std::span<SampleResult> results);
@@ -122,6 +126,7 @@ class RayTree {
   std::vector<std::uint32_t> free_;
   std::vector<std::uint32_t> pending_;  ///< a stack
   std::vector<std::uint32_t> batch_nodes_;
+  std::vector<std::uint32_t> batch_answers_;  ///< index in nearest_answers_ of each node of the batch
   std::vector<NearestQuery> nearest_queries_;
   std::vector<NearestAnswer> nearest_answers_;
   std::vector<Shade> shades_;
