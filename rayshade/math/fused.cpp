@@ -3,8 +3,10 @@
 
 #include <cmath>
 
-// Each function is compiled twice, for processors with and without the instruction; both round alike.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// Each function is compiled twice, for processors with and without the instruction; both round alike. Not
+// under the thread sanitizer: it would watch the resolver, which runs before the sanitizer is ready, and
+// crash.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define RAYSHADE_BOTH_WAYS __attribute__((target_clones("fma", "default")))
 #else
 #define RAYSHADE_BOTH_WAYS
