@@ -81,7 +81,7 @@ package: packages ## build a Debian package in build/ and check it
 	lintian --allow-root --fail-on error,warning $(BUILD)/*.deb
 	@ls -l $(BUILD)/*.deb
 
-lint: lint-packages ## clang-format, clang-tidy, manual pages
+lint: lint-packages ## a second compiler, clang-format and clang-tidy
 	clang-format --dry-run -Werror $$(git ls-files '*.cpp' '*.h')
 	cmake -S . -B build-lint -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release
 	cmake --build build-lint -j $(JOBS)
