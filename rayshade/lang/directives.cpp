@@ -211,7 +211,8 @@ void Preprocessor::include_file(File& file, const Place& place, const std::strin
     candidates.push_back(target);
   } else {
     if (quoted) candidates.push_back(file.directory + target);
-    for (const std::string& directory : include_directories_) candidates.push_back(directory + "/" + target);
+    for (const std::string& directory : include_directories_)
+      candidates.emplace_back(directory).append("/").append(target);
   }
   Bytes bytes;
   std::string reason = "no directory to look in was given with -I";

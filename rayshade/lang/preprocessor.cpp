@@ -113,10 +113,13 @@ void Preprocessor::text_line(File& file) {
     const char c = text[at];
     if (!kStops.is[static_cast<unsigned char>(c)]) {
       ++at;
-    } else if (c == '\n') {
+      continue;
+    }
+    if (c == '\n') {
       copy(file, at + 1);
       return;
-    } else if (is_identifier_start(c)) {
+    }
+    if (is_identifier_start(c)) {
       const std::size_t length = identifier_length(text.substr(at));
       if (expander_.find(text.substr(at, length))) {
         copy(file, at);

@@ -28,7 +28,7 @@ bool is_aggregate(const Node& node) { return !is_primitive(node.kind) && node.ki
 class UniqueNames {
  public:
   std::string take(const std::string& wanted) {
-    const std::string base = is_language_name(wanted) ? wanted : "object";
+    std::string base = is_language_name(wanted) ? wanted : "object";
     if (taken_.insert(base).second) return base;
     for (std::size_t& number = next_.try_emplace(base, 2).first->second;; ++number) {
       std::string candidate = base + '_' + std::to_string(number);

@@ -138,7 +138,7 @@ void TextWriter::end_line(int depth) {
     text_.clear();
   }
   text_ += '\n';
-  text_.append(static_cast<std::size_t>(2 * std::min(depth, 20)), ' ');
+  text_.append(2 * static_cast<std::size_t>(std::min(depth, 20)), ' ');
 }
 
 const std::string& SurfaceNames::name(const Surface& surface) {
