@@ -8,7 +8,7 @@ SUDO    := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 
 # What the program is built from, and what only the tests and the extras need.
 PACKAGES       := g++ cmake ninja-build flex bison pkg-config libpng-dev zlib1g-dev libfmt-dev libsleef-dev \
-                  librandom123-dev libopenexr-dev
+                  librandom123-dev libopenexr-dev libhwy-dev
 TEST_PACKAGES  := libgtest-dev libgmock-dev nlohmann-json3-dev libboost-dev man-db groff-base
 BENCH_PACKAGES := libbenchmark-dev time
 LINT_PACKAGES  := clang clang-tidy clang-format libclang-rt-14-dev

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "rayshade/render/renderer.h"
 #include "rayshade/scene/settings.h"
 
 namespace rayshade {
@@ -26,8 +27,6 @@ enum class Action : std::uint8_t {
   kCompletion
 };
 enum class Preprocess : std::uint8_t { kAuto, kAlways, kNever };
-enum class IntersectorChoice : std::uint8_t { kHierarchy, kBruteForce };
-
 struct Options {
   Action action = Action::kRender;
   std::string input;  ///< empty: standard input
@@ -48,8 +47,10 @@ struct Options {
   std::optional<std::string> report_file;
   int threads = 0;  ///< 0: what the process may use
   int block = 0;    ///< side of a block; 0: chosen
-  IntersectorChoice intersector = IntersectorChoice::kHierarchy;
+  IntersectorKind intersector = IntersectorKind::kFas;
   std::optional<std::string> stats_file, cost_map, layers;
+  std::uint64_t fas_memory = 0;  ///< bytes; 0: a quarter of what the process may use
+  fas::Split fas_split = fas::Split::kAdaptive;
   std::optional<std::uint64_t> memory_limit;  ///< bytes; unset: what the machine has
   int explain_x = 0, explain_y = 0;
 };

@@ -146,7 +146,9 @@ class Run {
     RenderOptions out;
     out.threads = options_.threads > 0 ? options_.threads : available_threads();
     out.block_side = options_.block;
-    out.brute_force = options_.intersector == IntersectorChoice::kBruteForce;
+    out.intersector = options_.intersector;
+    out.fas_memory = options_.fas_memory;
+    out.fas_split = options_.fas_split;
     out.layers = options_.layers.has_value();
     out.cost = options_.cost_map.has_value();
     out.sample_map = options_.sample_map;

@@ -154,8 +154,8 @@ class CompiledScene {
 
   /// Bounds and hierarchies over another frame's shutter interval; does nothing for a scene without motion.
   /// Leaves may change their numbers within their group. Throws MotionError where a transform is degenerate at the
-  /// start of the frame.
-  void prepare_frame(const Interval& shutter, double frame, bool hierarchies);
+  /// start of the frame. Returns whether anything changed.
+  bool prepare_frame(const Interval& shutter, double frame, bool hierarchies);
   /// Largest extent of a leaf in the space of its group (planes: `scale`).
   double leaf_extent(LeafId leaf) const;
   /// Conservative bounds in the space of its group at any time of the interval. What CSG and instances refer to is

@@ -143,6 +143,11 @@ bool improve_by_leaf(TraceContext& context, LeafId id, const Ray& ray, double lo
   return improve(context, id, context.scene.leaves[id], ray, local, lo, mask, base, best);
 }
 
+bool leaf_occludes(TraceContext& context, LeafId id, const Ray& ray, double lo, double hi, Opacity mask) {
+  LocalRay local(ray);
+  return occludes(context, id, context.scene.leaves[id], ray, local, lo, hi, mask);
+}
+
 bool improve_by_group(TraceContext& context, std::uint32_t index, const Ray& ray, double lo, Opacity mask,
                       std::uint64_t base, Hit& best) {
   LocalRay local(ray);

@@ -124,11 +124,13 @@ double CompiledScene::leaf_condition(const Leaf& leaf) const {
   return condition;
 }
 
-void CompiledScene::prepare_frame(const Interval& new_shutter, double new_frame, bool hierarchies) {
+bool CompiledScene::prepare_frame(const Interval& new_shutter, double new_frame, bool hierarchies) {
   const bool same = shutter.lo == new_shutter.lo && shutter.hi == new_shutter.hi && frame == new_frame;
   shutter = new_shutter;
   frame = new_frame;
-  if (has_motion && !same) rebuild(hierarchies);
+  if (!has_motion || same) return false;
+  rebuild(hierarchies);
+  return true;
 }
 
 void CompiledScene::rebuild(bool hierarchies) {

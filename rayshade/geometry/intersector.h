@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "rayshade/geometry/trace.h"
 
@@ -51,11 +52,31 @@ class Intersector {
                        TraceScratch& scratch) const = 0;
   virtual void occluded(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
                         TraceScratch& scratch) const = 0;
+  /// The compiled scene has been prepared for another frame; scratches used before must not be used again.
+  virtual void scene_changed() {}
 };
 
 /// Tests every leaf for every ray; stays for ever as the oracle.
 std::unique_ptr<Intersector> make_brute_force(const CompiledScene& scene);
 /// A bounding hierarchy per group.
 std::unique_ptr<Intersector> make_hierarchy(const CompiledScene& scene);
+
+/// A class of rays without extent in space: all pass through one point, or all are parallel.
+struct RayClass {
+  enum class Kind : std::uint8_t { kSpread, kPoint, kParallel };
+  Kind kind = Kind::kSpread;  ///< with extent in space
+  Vec3 point;  ///< kPoint: where they pass; kParallel: their direction, unit length
+};
+
+struct FasOptions {
+  RayClass eye;                                 ///< of eye rays; kSpread: with a lens
+  std::vector<RayClass> lights;                 ///< of shadow rays, by their light number
+  std::size_t memory = std::size_t{256} << 20;  ///< bytes for all trees
+  fas::Split split = fas::Split::kAdaptive;
+};
+
+/// Adaptive subdivision: a hyper-tree per class of rays over the world's leaves, the hierarchy for all other
+/// rays. `scene` must have hierarchies.
+std::unique_ptr<Intersector> make_fas(const CompiledScene& scene, const FasOptions& options);
 
 }  // namespace rayshade

@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "fas/tree.h"
 #include "rayshade/geometry/compiled_scene.h"
 #include "rayshade/geometry/hit.h"
 #include "rayshade/geometry/rank.h"
@@ -47,6 +49,7 @@ struct TraceScratch {
   MotionCache motion;
   TraceCounts counts;
   bool brute_force = false;   ///< loop over all leaves, ignore hierarchies
+  std::unique_ptr<fas::ThreadState> trees;  ///< what this thread remembers of the trees of an intersector
 };
 
 /// The nearest hit of one leaf with t beyond `lo` (open or closed as objects.md 2 says) and t <= hi. A function of

@@ -35,6 +35,8 @@ inline void start_search(Hit& best, double hi) {
 
 bool improve_by_leaf(TraceContext& context, LeafId leaf, const Ray& ray, double lo, Opacity mask,
                      std::uint64_t base, Hit& best);
+/// Whether a leaf that is within `mask` as a whole lies between lo and hi.
+bool leaf_occludes(TraceContext& context, LeafId leaf, const Ray& ray, double lo, double hi, Opacity mask);
 bool improve_by_group(TraceContext& context, std::uint32_t group, const Ray& ray, double lo, Opacity mask,
                       std::uint64_t base, Hit& best);
 /// In csg.cpp.

@@ -117,19 +117,19 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider&
     compile.flip_normals = settings.flip_normals;
     compile.shutter = shutter_of(settings, settings.first_frame);
     compile.frame = settings.first_frame;
-    compile.hierarchies = !options.brute_force;
+    compile.hierarchies = !brute_force();
     compiled_ = compile_scene(scene, provider, compile);
     textures_ = std::make_unique<CompiledTextures>(*compiled_, provider);
   });
   if (compiled_->counts.primitives == 0) throw RenderError("nothing to render: the scene has no objects", {});
-  intersector_ = options.brute_force ? make_brute_force(*compiled_) : make_hierarchy(*compiled_);
   camera_ = std::make_unique<Camera>(settings_);
   grid_ = std::make_unique<SampleGrid>(settings_);
   frame_.shading.compiled = compiled_.get();
   frame_.shading.textures = textures_.get();
   frame_.shading.settings = &settings_;
-  frame_.shading.intersector = intersector_.get();
   frame_.shading.lights = prepare_lights(scene);
+  make_intersector();
+  frame_.shading.intersector = intersector_.get();
   frame_.camera = camera_.get();
   frame_.grid = grid_.get();
   frame_.layers = options.layers;
@@ -149,9 +149,24 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider&
 
 Renderer::~Renderer() = default;
 
+void Renderer::make_intersector() {
+  if (options_.intersector != IntersectorKind::kFas) {
+    intersector_ = brute_force() ? make_brute_force(*compiled_) : make_hierarchy(*compiled_);
+    return;
+  }
+  FasOptions options;
+  if (!camera_->has_lens()) options.eye = {RayClass::Kind::kPoint, camera_->eye()};
+  for (const ShadingLight& light : frame_.shading.lights) options.lights.push_back(shadow_class(light));
+  options.memory = options_.fas_memory > 0 ? options_.fas_memory : available_memory() / 4;
+  options.split = options_.fas_split;
+  intersector_ = make_fas(*compiled_, options);
+}
+
 void Renderer::prepare_frame(int frame) {
   frame_.shading.frame = frame;
-  located([&] { compiled_->prepare_frame(shutter_of(settings_, frame), frame, !options_.brute_force); });
+  if (located([&] { return compiled_->prepare_frame(shutter_of(settings_, frame), frame, !brute_force()); })) {
+    intersector_->scene_changed();
+  }
 }
 
 bool Renderer::render_frame(int frame, FrameBuffer& picture, const std::atomic<bool>& stop,
@@ -172,7 +187,7 @@ bool Renderer::render_frame(int frame, FrameBuffer& picture, const std::atomic<b
   const auto work = [&] {
     const double cpu = thread_cpu_seconds();
     BlockRenderer renderer(frame_);
-    renderer.tree().scratch().brute_force = options_.brute_force;
+    renderer.tree().scratch().brute_force = brute_force();
     try {
       LayerSpans layers(picture.layers());
       BlockPixels pixels;
@@ -234,7 +249,7 @@ bool Renderer::render_frame(int frame, FrameBuffer& picture, const std::atomic<b
 std::string Renderer::explain(int frame, int x, int y) {
   prepare_frame(frame);
   BlockRenderer renderer(frame_);
-  renderer.tree().scratch().brute_force = options_.brute_force;
+  renderer.tree().scratch().brute_force = brute_force();
   ExplainText text(frame_);
   located([&] { renderer.observe(x, y, text); });
   return text.text();

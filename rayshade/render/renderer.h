@@ -19,10 +19,14 @@
 
 namespace rayshade {
 
+enum class IntersectorKind : std::uint8_t { kFas, kHierarchy, kBruteForce };
+
 struct RenderOptions {
   int threads = 1;
   int block_side = 0;  ///< 0: chosen from picture and threads
-  bool brute_force = false;
+  IntersectorKind intersector = IntersectorKind::kFas;
+  std::size_t fas_memory = 0;  ///< bytes for the hyper-trees; 0: a quarter of what the process may use
+  fas::Split fas_split = fas::Split::kAdaptive;
   bool layers = false;
   bool cost = false;
   bool sample_map = false;  ///< alpha tells which pixels are fully sampled
@@ -61,6 +65,8 @@ class Renderer {
   const CompiledScene& compiled() const { return *compiled_; }
 
  private:
+  bool brute_force() const { return options_.intersector == IntersectorKind::kBruteForce; }
+  void make_intersector();
   void prepare_frame(int frame);
 
   RenderSettings settings_;

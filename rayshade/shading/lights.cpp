@@ -57,6 +57,18 @@ std::vector<ShadingLight> prepare_lights(const Scene& scene) {
   return lights;
 }
 
+RayClass shadow_class(const ShadingLight& light) {
+  switch (light.kind) {
+    case LightKind::kPoint:
+    case LightKind::kSpot:
+      return {RayClass::Kind::kPoint, light.position};
+    case LightKind::kDirectional:
+      return {RayClass::Kind::kParallel, light.position};
+    default:
+      return {};
+  }
+}
+
 double spot_factor(const ShadingLight& light, double x) {
   if (!(x > 0)) return 0;
   double ramp = 1;

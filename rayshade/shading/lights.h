@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "rayshade/geometry/intersector.h"
 #include "rayshade/scene/light.h"
 #include "rayshade/scene/scene.h"
 
@@ -26,6 +27,9 @@ struct ShadingLight {
 
 /// All lights of the scene (the default light where it defines none), in evaluation order.
 std::vector<ShadingLight> prepare_lights(const Scene& scene);
+
+/// The class of the shadow rays toward a light, for the intersector.
+RayClass shadow_class(const ShadingLight& light);
 
 /// How a light stands to a point before shadows: unit direction from the point, distance (kFar for
 /// directional), and the colour that arrives (intensity times spot factor).

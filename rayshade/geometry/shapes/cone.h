@@ -25,6 +25,7 @@ class Cone {
   /// them (objects.md G18).
   TextureCoordinates texture_coordinates(const Vec3& x, const Vec3& facing_normal, const ShapeHit& hit) const;
   Bounds3 bounds() const { return wall_.bounds(); }
+  const Wall& wall() const { return wall_; }
 
  private:
   Wall wall_;  ///< from the smaller radius to the larger

@@ -23,6 +23,7 @@ class Cylinder {
   /// v along the axis, u around it.
   TextureCoordinates texture_coordinates(const Vec3& x, const Vec3& facing_normal, const ShapeHit& hit) const;
   Bounds3 bounds() const { return wall_.bounds(); }
+  const Wall& wall() const { return wall_; }
 
  private:
   Wall wall_;

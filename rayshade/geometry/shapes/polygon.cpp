@@ -70,6 +70,17 @@ bool Polygon::winds_around(Point2 c) const {
   return winding != 0;
 }
 
+Vec3 Polygon::corner(std::size_t i) const {
+  const int w_axis = 3 - u_axis_ - v_axis_;
+  Vec3 out;
+  out[u_axis_] = vertices_[i].u;
+  out[v_axis_] = vertices_[i].v;
+  out[w_axis] = point_[w_axis] - (normal_[u_axis_] * (vertices_[i].u - point_[u_axis_]) +
+                                  normal_[v_axis_] * (vertices_[i].v - point_[v_axis_])) /
+                                     normal_[w_axis];
+  return out;
+}
+
 bool Polygon::intersect(const Ray& ray, double lo, double hi, ShapeHit& hit) const {
   const double slope = dot(normal_, ray.direction);
   const double t = dot(normal_, point_ - ray.origin) / slope;

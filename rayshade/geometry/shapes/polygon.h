@@ -26,6 +26,10 @@ class Polygon {
   /// u = x, v = y in primitive space, whatever the orientation.
   TextureCoordinates texture_coordinates(const Vec3& x, const Vec3& facing_normal, const ShapeHit& hit) const;
   Bounds3 bounds() const { return bounds_; }
+  std::size_t corners() const { return vertices_.size(); }
+  /// A vertex moved into the plane, as the inside test sees it.
+  Vec3 corner(std::size_t i) const;
+  const Vec3& normal() const { return normal_; }
 
  private:
   struct Point2 {

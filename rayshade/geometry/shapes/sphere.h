@@ -44,6 +44,8 @@ class Sphere {
   /// v from the -z pole to the +z pole, u around from +x over +y; on the seam u = 1 (objects.md G16).
   TextureCoordinates texture_coordinates(const Vec3& x, const Vec3& facing_normal, const ShapeHit& hit) const;
   Bounds3 bounds() const;
+  const Vec3& center() const { return center_; }
+  double radius() const { return radius_; }
 
  private:
   /// Directions that are knowingly not of unit length: the original's formula as it stands, behind the

@@ -37,6 +37,7 @@ class Triangle {
   /// v = b3, u = b2 / (b1 + b2) of the weights of the hit.
   TextureCoordinates texture_coordinates(const Vec3& x, const Vec3& facing_normal, const ShapeHit& hit) const;
   Bounds3 bounds() const;
+  const Vec3 (&vertices() const)[3] { return p_; }
 
  private:
   friend class SmoothTriangle;
@@ -66,6 +67,7 @@ class SmoothTriangle {
     return flat_.texture_coordinates(x, facing_normal, hit);
   }
   Bounds3 bounds() const { return flat_.bounds(); }
+  const Vec3 (&vertices() const)[3] { return flat_.vertices(); }
 
  private:
   friend class UvTriangle;
@@ -90,6 +92,7 @@ class UvTriangle {
   /// The vertices' u and v, weighted.
   TextureCoordinates texture_coordinates(const Vec3& x, const Vec3& facing_normal, const ShapeHit& hit) const;
   Bounds3 bounds() const { return smooth_.bounds(); }
+  const Vec3 (&vertices() const)[3] { return smooth_.vertices(); }
 
  private:
   SmoothTriangle smooth_;

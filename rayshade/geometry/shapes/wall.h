@@ -41,6 +41,10 @@ class Wall {
   Vec3 local(const Vec3& point) const { return frame_.local(point - origin_); }
   double radius_at(double z) const { return radius_ + slope_ * z; }
   double length() const { return length_; }
+  const Vec3& origin() const { return origin_; }
+  Vec3 end() const { return origin_ + length_ * frame_.rows[2]; }
+  double start_radius() const { return radius_; }
+  double end_radius() const { return end_radius_; }
   const AxisFrame& frame() const { return frame_; }
 
  private:
