@@ -142,6 +142,10 @@ class CompiledScene {
 
   /// Per path node: whether it or a node further out in the same group has textures.
   std::vector<std::uint8_t> path_textured;
+  /// Per path node: the surface of the innermost node outward that has one; kNone: none in the group.
+  std::vector<std::uint32_t> path_surfaces;
+  /// world_extent() of the primitives of a scene of not too many leaves, seen without instances; else empty.
+  std::vector<double> leaf_extents;
   /// Groups, every one after all that it refers to.
   std::vector<std::uint32_t> bottom_up;
 
@@ -172,6 +176,7 @@ class CompiledScene {
   void rebuild(bool hierarchies);
   void place_animated();
   void set_tolerances();
+  void measure_extents();
   void rebuild_group(Group& group, bool hierarchies);
   Bounds3 group_bounds(std::uint32_t group) const;
   Bounds3 csg_bounds(const Csg& csg) const;

@@ -5,6 +5,7 @@
 // only choose which leaves are tested.
 #include "fas/tree.h"
 #include "rayshade/geometry/intersector.h"
+#include "rayshade/geometry/pack_tracer.h"
 #include "rayshade/geometry/trace_context.h"
 #include "rayshade/geometry/tree_candidates.h"
 
@@ -138,7 +139,7 @@ class FasIntersector final : public Intersector {
 }  // namespace
 
 std::unique_ptr<Intersector> make_fas(const CompiledScene& scene, const FasOptions& options) {
-  if (!scene.groups[0].hierarchy) return make_hierarchy(scene);
+  if (!scene.groups[0].hierarchy || traces_in_packs(scene)) return make_hierarchy(scene);
   return std::make_unique<FasIntersector>(scene, options);
 }
 

@@ -6,6 +6,7 @@
 #include "rayshade/geometry/compiled_scene.h"
 #include "rayshade/geometry/hierarchy.h"
 #include "rayshade/geometry/rank.h"
+#include "rayshade/geometry/resolve.h"
 
 namespace rayshade {
 namespace {
@@ -139,7 +140,22 @@ void CompiledScene::rebuild(bool hierarchies) {
   for (const std::uint32_t group : bottom_up) rebuild_group(groups[group], hierarchies);
   scale = groups[0].bounds.largest_extent();
   if (!(scale > 0) || !std::isfinite(scale)) scale = 1;
+  measure_extents();
   count_bytes();
+}
+
+/// For scenes whose table is small beside their leaves' use.
+void CompiledScene::measure_extents() {
+  constexpr std::size_t kMost = std::size_t{1} << 17;
+  leaf_extents.clear();
+  if (leaves.size() > kMost) return;
+  std::vector<double> extents(leaves.size(), 0);
+  Hit hit;
+  for (hit.leaf = 0; hit.leaf < leaves.size(); ++hit.leaf) {
+    const LeafKind kind = leaves[hit.leaf].kind;
+    if (kind != LeafKind::kCsg && kind != LeafKind::kInstance) extents[hit.leaf] = world_extent(*this, hit);
+  }
+  leaf_extents = std::move(extents);
 }
 
 /// Animated placements as they are at the start of the frame.
@@ -236,7 +252,8 @@ void CompiledScene::count_bytes() {
   const auto pool = [](const auto& vector) {
     return static_cast<std::uint64_t>(vector.capacity() * sizeof(vector[0]));
   };
-  counts.bytes = pool(leaves) + pool(groups) + pool(path_nodes) + pool(path_textured) + pool(placements) +
+  counts.bytes = pool(leaves) + pool(groups) + pool(path_nodes) + pool(path_textured) + pool(path_surfaces) +
+                 pool(leaf_extents) + pool(placements) +
                  pool(csgs) + pool(instances) + pool(level_transforms) + pool(bottom_up) + pool(planes) +
                  pool(spheres) + pool(boxes) + pool(discs) + pool(cylinders) + pool(cones) + pool(tori) +
                  pool(triangles) + pool(smooth_triangles) + pool(uv_triangles) + pool(polygons) +

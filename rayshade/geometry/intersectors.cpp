@@ -1,19 +1,76 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <vector>
+
 #include "rayshade/geometry/intersector.h"
+#include "rayshade/geometry/pack_tracer.h"
 #include "rayshade/geometry/trace_context.h"
 
 namespace rayshade {
 namespace {
 
+/// Worlds of so few leaves are looped over by packs of rays: a vector test of every leaf costs less than finding
+/// out which to test.
+constexpr std::uint32_t kPackLeaves = 24;
+
+bool worth_a_box(LeafKind kind) {
+  switch (kind) {
+    case LeafKind::kTorus:
+    case LeafKind::kBlob:
+    case LeafKind::kHeightField:
+    case LeafKind::kCsg:
+    case LeafKind::kInstance:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// More leaves than this without a vector test are better left to a hierarchy.
+constexpr std::ptrdiff_t kSlowLeaves = 3;
+
+}  // namespace
+
+bool traces_in_packs(const CompiledScene& scene) {
+  const Group& world = scene.groups[0];
+  const auto first = scene.leaves.begin() + world.first, last = first + world.count;
+  return world.count <= kPackLeaves && std::count_if(first, last, [](const Leaf& leaf) {
+                                         return leaf.animated || !has_vector_test(leaf.kind);
+                                       }) <= kSlowLeaves;
+}
+
+namespace {
+
 /// Answers from the groups of the compiled scene: by loops over every leaf, or by their hierarchies.
 class GroupIntersector : public Intersector {
  public:
-  GroupIntersector(const CompiledScene& scene, bool brute_force) : scene_(scene), brute_force_(brute_force) {}
+  GroupIntersector(const CompiledScene& scene, bool brute_force) : scene_(scene), brute_force_(brute_force) {
+    scene_changed();
+  }
+
+  void scene_changed() override {
+    const Group& world = scene_.groups[0];
+    boxes_.clear();
+    in_packs_ = !brute_force_ && traces_in_packs(scene_);
+    if (!in_packs_) return;
+    for (LeafId id = world.first; id < world.first + world.count; ++id) {
+      boxes_.push_back(worth_a_box(scene_.leaves[id].kind) ? scene_.leaf_bounds(id, scene_.shutter, scene_.frame)
+                                                           : Bounds3::everything());
+    }
+  }
 
   void nearest(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
                TraceScratch& scratch) const override {
     const Mode mode(scratch, brute_force_);
-    for (std::size_t i = 0; i < queries.size(); ++i) {
+    std::size_t i = 0;
+    if (in_packs_) {
+      PackTracer tracer(scene_, scratch);
+      for (std::size_t n = 0; (n = run_of_one_mask(queries.subspan(i))) >= PackTracer::kFewest; i += n) {
+        tracer.load(queries.subspan(i), answers.subspan(i), nullptr, static_cast<int>(n));
+        nearest_in_pack(tracer);
+      }
+    }
+    for (; i < queries.size(); ++i) {
       const NearestQuery& query = queries[i];
       NearestAnswer& answer = answers[i];
       TraceContext context(scene_, scratch);
@@ -28,7 +85,15 @@ class GroupIntersector : public Intersector {
   void occluded(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
                 TraceScratch& scratch) const override {
     const Mode mode(scratch, brute_force_);
-    for (std::size_t i = 0; i < queries.size(); ++i) {
+    std::size_t i = 0;
+    if (in_packs_) {
+      PackTracer tracer(scene_, scratch);
+      for (std::size_t n = 0; (n = run_of_one_mask(queries.subspan(i))) >= PackTracer::kFewest; i += n) {
+        tracer.load(queries.subspan(i), nullptr, static_cast<int>(n));
+        tracer.answer_occluded(answers.subspan(i), occluded_in_pack(tracer));
+      }
+    }
+    for (; i < queries.size(); ++i) {
       const OcclusionQuery& query = queries[i];
       TraceContext context(scene_, scratch);
       answers[i].occluded = group_occludes(context, 0, query.ray, query.lo, query.hi, query.mask);
@@ -53,8 +118,46 @@ class GroupIntersector : public Intersector {
     bool before_;
   };
 
+  /// How many queries from the first on ask for the same opacity, up to a pack.
+  template <class Query>
+  static std::size_t run_of_one_mask(std::span<const Query> queries) {
+    const std::size_t most = std::min<std::size_t>(queries.size(), RayPack::kMost);
+    std::size_t n = 0;
+    while (n < most && queries[n].mask == queries[0].mask) ++n;
+    return n;
+  }
+
+  RayPack::Mask near_box(PackTracer& tracer, std::size_t place, RayPack::Mask mask) const {
+    const Bounds3& box = boxes_[place];
+    if (mask == 0 || box.unbounded()) return mask;
+    tracer.count_bounds(mask);
+    return box.empty() ? 0 : clip_pack(box, scene_.groups[0].condition, tracer.pack(), mask);
+  }
+
+  void nearest_in_pack(PackTracer& tracer) const {
+    const Group& world = scene_.groups[0];
+    for (std::uint32_t k = 0; k < world.count; ++k) {
+      const RayPack::Mask mask = near_box(tracer, k, tracer.pack().all());
+      if (mask != 0) tracer.improve(world.first + k, mask);
+    }
+    tracer.answer_nearest();
+  }
+
+  RayPack::Mask occluded_in_pack(PackTracer& tracer) const {
+    const Group& world = scene_.groups[0];
+    const RayPack::Mask all = tracer.pack().all();
+    RayPack::Mask stopped = 0;
+    for (std::uint32_t k = 0; k < world.count && stopped != all; ++k) {
+      const RayPack::Mask mask = near_box(tracer, k, all & ~stopped);
+      if (mask != 0) stopped |= tracer.occlude(world.first + k, mask);
+    }
+    return stopped;
+  }
+
   const CompiledScene& scene_;
   bool brute_force_;
+  bool in_packs_ = false;
+  std::vector<Bounds3> boxes_;  ///< where in_packs_, of leaves whose test costs more than that of a box
 };
 
 }  // namespace

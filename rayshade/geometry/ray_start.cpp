@@ -16,18 +16,25 @@ constexpr double kRayTolerance = kEpsilon, kShadowTolerance = 4 * kEpsilon;
 
 }  // namespace
 
-RayStart secondary_start(const WorldHit& hit, const Vec3& direction, double extent, bool shadow) {
+RayStarts::RayStarts(const WorldHit& hit, double leaf_extent)
+    : point(hit.point), normal(hit.geometric_normal), extent(std::min(1.0, leaf_extent)) {
   constexpr double kUnit = std::numeric_limits<double>::epsilon();
   const double coordinates = max_abs(hit.point);
-  const double step = kSafety * std::max(hit.error, 2 * kUnit * coordinates);
-  const bool behind = dot(direction, hit.geometric_normal) < 0;
+  step = kSafety * std::max(hit.error, 2 * kUnit * coordinates);
+  rounding = 4 * kUnit * coordinates;
+}
+
+RayStart RayStarts::toward(const Vec3& direction, double length_of_direction, bool shadow) const {
+  const bool behind = dot(direction, normal) < 0;
   RayStart out;
-  out.origin = hit.point + (behind ? -step : step) * hit.geometric_normal;
+  out.origin = point + (behind ? -step : step) * normal;
   const double tolerance = shadow ? kShadowTolerance : kRayTolerance;
-  const double speed = length(direction);
-  const double rounding = speed > 0 ? 4 * kUnit * coordinates / speed : 0;
-  out.lo = std::max(tolerance * std::min(1.0, extent), rounding);
+  out.lo = std::max(tolerance * extent, length_of_direction > 0 ? rounding / length_of_direction : 0);
   return out;
+}
+
+RayStart secondary_start(const WorldHit& hit, const Vec3& direction, double extent, bool shadow) {
+  return RayStarts(hit, extent).toward(direction, length(direction), shadow);
 }
 
 }  // namespace rayshade

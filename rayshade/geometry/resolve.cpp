@@ -74,6 +74,20 @@ double magnitude(const Affine& map, const Vec3& p) {
                  std::fabs(p.z) * abs(map.rows[2]) + abs(map.translation));
 }
 
+/// Turns both normals toward the origin of the ray (objects.md 1.11 step 4); whether it enters.
+bool face_origin(const Vec3& direction, const Hit& hit, bool smooth, Vec3& normal, Vec3& geometric_normal) {
+  double k = dot(direction, normal);
+  if (smooth) {
+    const double facet = dot(direction, geometric_normal);
+    if ((k <= 0 && facet > 0) || (k >= 0 && facet < 0)) k = facet;
+  }
+  if (k > 0) {
+    normal = -normal;
+    geometric_normal = -geometric_normal;
+  }
+  return hit.flag == EnterFlag::kUnset ? !(k > 0) : hit.flag == EnterFlag::kEntering;
+}
+
 }  // namespace
 
 PathWalk::PathWalk(const CompiledScene& scene, const Hit& hit, double time, TraceScratch& scratch)
@@ -124,18 +138,7 @@ LocalHit resolve_local(const CompiledScene& scene, const Hit& hit, const Ray& wo
   out.geometric_normal = surface.geometric_normal;
   out.error = surface.error;
   out.smooth = surface.smooth;
-
-  double k = dot(out.ray.direction, surface.normal);
-  if (surface.smooth) {
-    const double facet = dot(out.ray.direction, surface.geometric_normal);
-    if ((k <= 0 && facet > 0) || (k >= 0 && facet < 0)) k = facet;
-  }
-  out.entering = !(k > 0);
-  if (k > 0) {
-    out.normal = -out.normal;
-    out.geometric_normal = -out.geometric_normal;
-  }
-  if (hit.flag != EnterFlag::kUnset) out.entering = hit.flag == EnterFlag::kEntering;
+  out.entering = face_origin(out.ray.direction, hit, surface.smooth, out.normal, out.geometric_normal);
   return out;
 }
 
@@ -143,10 +146,8 @@ const Surface& surface_of(const CompiledScene& scene, const Hit& hit) {
   static const Surface kDefault = default_surface();
   std::uint32_t node = scene.leaves[hit.leaf].path;
   for (std::uint32_t left = hit.instances.count;; --left) {
-    for (; node != kNone; node = scene.path_nodes[node].parent) {
-      const std::uint32_t surface = scene.path_nodes[node].surface;
-      if (surface != kNone) return scene.scene->surfaces[surface];
-    }
+    if (node != kNone && scene.path_surfaces[node] != kNone)
+      return scene.scene->surfaces[scene.path_surfaces[node]];
     if (left == 0) return kDefault;
     node = scene.leaves[hit.instances.leaves[left - 1]].path;
   }
@@ -181,8 +182,28 @@ double carried_error(double error, const AffinePair& map, const Vec3& inner, con
 
 WorldHit resolve_world(const CompiledScene& scene, const Hit& hit, const Ray& world_ray,
                        TraceScratch& scratch) {
+  WorldHit out;
+  resolve_world(scene, hit, world_ray, scratch, out);
+  return out;
+}
+
+void resolve_world(const CompiledScene& scene, const Hit& hit, const Ray& world_ray, TraceScratch& scratch,
+                   WorldHit& out) {
+  const Leaf& own = scene.leaves[hit.leaf];
+  if (own.placement == kNone && hit.instances.count == 0) {
+    // Primitive space is the world's.
+    const SurfacePoint surface = with_shape(
+        scene, own, [&](const auto& shape) { return shape.surface_point(world_ray, hit.shape); });
+    out.point = surface.point;
+    out.normal = surface.normal;
+    out.geometric_normal = surface.geometric_normal;
+    out.error = surface.error;
+    out.smooth = surface.smooth;
+    out.entering = face_origin(world_ray.direction, hit, surface.smooth, out.normal, out.geometric_normal);
+    return;
+  }
   const LocalHit local = resolve_local(scene, hit, world_ray, scratch);
-  WorldHit out{local.point, local.normal, local.geometric_normal, local.error, local.smooth, local.entering};
+  out = {local.point, local.normal, local.geometric_normal, local.error, local.smooth, local.entering};
   const auto ascend = [&](const Leaf& leaf) {
     if (leaf.placement == kNone) return;
     const AffinePair& map = placement_of(scene, leaf, world_ray.time, scratch);
@@ -194,10 +215,10 @@ WorldHit resolve_world(const CompiledScene& scene, const Hit& hit, const Ray& wo
   };
   ascend(scene.leaves[hit.leaf]);
   for (std::uint32_t i = hit.instances.count; i-- > 0;) ascend(scene.leaves[hit.instances.leaves[i]]);
-  return out;
 }
 
 double world_extent(const CompiledScene& scene, const Hit& hit) {
+  if (hit.instances.count == 0 && hit.leaf < scene.leaf_extents.size()) return scene.leaf_extents[hit.leaf];
   const Leaf& leaf = scene.leaves[hit.leaf];
   const Bounds3 box = scene.shape_bounds(leaf);
   if (box.empty() || box.unbounded()) return scene.scale;

@@ -59,6 +59,8 @@ struct WorldHit {
   bool entering = true;
 };
 WorldHit resolve_world(const CompiledScene& scene, const Hit& hit, const Ray& world_ray, TraceScratch& scratch);
+void resolve_world(const CompiledScene& scene, const Hit& hit, const Ray& world_ray, TraceScratch& scratch,
+                   WorldHit& out);
 /// The error bound of a point after `map` has taken it from `inner` to `outer`.
 double carried_error(double error, const AffinePair& map, const Vec3& inner, const Vec3& outer);
 
@@ -71,6 +73,18 @@ struct RayStart {
   Vec3 origin;
   double lo = 0;
 };
+/// What does not depend on the direction, for the many rays that leave one hit.
+struct RayStarts {
+  Vec3 point, normal;
+  double step = 0;       ///< how far off the surface
+  double rounding = 0;   ///< least lower limit, for directions of unit length
+  double extent = 0;     ///< at most 1
+  RayStarts() = default;
+  RayStarts(const WorldHit& hit, double extent);
+  /// `length_of_direction`: 1 where it is known to be one to within rounding.
+  RayStart toward(const Vec3& direction, double length_of_direction, bool shadow) const;
+};
+
 /// `extent`: largest extent of the leaf hit, in world units (leaf_extent).
 RayStart secondary_start(const WorldHit& hit, const Vec3& direction, double extent, bool shadow);
 /// Extent of the leaf of a hit in world units, for secondary_start.

@@ -90,10 +90,12 @@ struct RayTree::Node {
 /// A hit being shaded.
 struct RayTree::Shade {
   std::uint32_t node = 0;
-  TexturedHit hit;
+  const Surface* surface = nullptr;  ///< the scene's own, or `textured`
+  WorldHit world;
+  Surface textured;
   Vec3 mirror;   ///< R
   double k = 0;  ///< -I.N
-  double extent = 1;
+  RayStarts starts;
 };
 
 /// One light at one hit, waiting for its shadow.
@@ -259,14 +261,15 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
     const EyeSample& sample = samples[node.root];
     const Gloss gloss({scene_.settings->seed, scene_.frame, sample.x, sample.y, sample.sample}, node.path);
     const SampleContext context{sample.sample_number, scene_.settings->samples, &gloss};
-    evaluate_hit(*scene_.compiled, *scene_.textures, answer.hit, node.ray, context, scratch_, shade.hit);
-    const WorldHit& world = shade.hit.world;
-    shade.extent = world_extent(*scene_.compiled, answer.hit);
+    shade.surface = &evaluate_hit(*scene_.compiled, *scene_.textures, answer.hit, node.ray, context, scratch_,
+                                  shade.world, shade.textured);
+    const WorldHit& world = shade.world;
+    shade.starts = RayStarts(world, world_extent(*scene_.compiled, answer.hit));
     shade.k = -dot(node.ray.direction, world.normal);
     shade.mirror = node.ray.direction + (2 * shade.k) * world.normal;
     node.distance = answer.hit.t();
     node.end = world.point;
-    node.color = shade.hit.surface.ambient * scene_.settings->ambient_light;
+    node.color = shade.surface->ambient * scene_.settings->ambient_light;
     if (node.kind == RayKind::kEye) {
       result.hit = true;
       result.distance = node.distance;
@@ -274,8 +277,9 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
       result.leaf = answer.hit.leaf;
     }
     if (observer_) {
+      const TexturedHit textured{world, *shade.surface};
       observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution,
-                         static_cast<int>(node.depth), true, node.distance, &answer.hit, &shade.hit});
+                         static_cast<int>(node.depth), true, node.distance, &answer.hit, &textured});
     }
   }
 }
@@ -292,8 +296,8 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
   for (std::uint32_t s = 0; s < shade_count_; ++s) {
     const Shade& shade = shades_[s];
     const Node& node = nodes_[shade.node];
-    const WorldHit& world = shade.hit.world;
-    const Surface& surface = shade.hit.surface;
+    const WorldHit& world = shade.world;
+    const Surface& surface = *shade.surface;
     const EyeSample& sample = samples[node.root];
     const bool answers_highlight = surface.specular_exponent >= kEpsilon && !is_black(surface.specular);
     for (std::size_t l = first_light; l < last_light; ++l) {
@@ -344,7 +348,7 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
           far = length(target);
           direction = target / far;
         }
-        const RayStart start = secondary_start(world, direction, shade.extent, true);
+        const RayStart start = shade.starts.toward(direction, 1, true);
         shadow_queries_.push_back({{start.origin, direction, node.ray.time, true},
                                    start.lo,
                                    far,
@@ -447,7 +451,7 @@ void RayTree::combine_lights() {
   for (const PendingLight& pending : lights_) {
     const Shade& shade = shades_[pending.shade];
     Node& node = nodes_[shade.node];
-    const Surface& surface = shade.hit.surface;
+    const Surface& surface = *shade.surface;
     const Color before = node.color;
     if (!pending.skipped && !pending.blocked) {
       if (pending.cosine > 0) {
@@ -476,8 +480,8 @@ void RayTree::combine_lights() {
 /// Sections 2.3 steps 3 to 6 and 2.5.
 void RayTree::spawn(Shade& shade) {
   const RenderSettings& settings = *scene_.settings;
-  const Surface& surface = shade.hit.surface;
-  const WorldHit& world = shade.hit.world;
+  const Surface& surface = *shade.surface;
+  const WorldHit& world = shade.world;
   Color reflect = surface.specular * surface.reflectance;
   const bool transmits = surface.transparency > kEpsilon;
   if (nodes_[shade.node].depth >= static_cast<std::uint32_t>(settings.max_depth)) {
@@ -489,8 +493,10 @@ void RayTree::spawn(Shade& shade) {
     const std::uint32_t id = allocate();
     Node& node = nodes_[shade.node];
     Node& out = nodes_[id];
-    const RayStart start = secondary_start(world, direction, shade.extent, false);
-    out.ray = {start.origin, direction, node.ray.time, std::fabs(length_squared(direction) - 1) < 1e-8};
+    const double square = length_squared(direction);
+    const bool unit = std::fabs(square - 1) < 1e-8;
+    const RayStart start = shade.starts.toward(direction, unit ? 1 : std::sqrt(square), false);
+    out.ray = {start.origin, direction, node.ray.time, unit};
     out.lo = start.lo;
     out.contribution = contribution;
     out.path = child_path(node.path, slot);

@@ -257,12 +257,19 @@ Vec3 textured_point(const LocalHit& local) {
 void evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, const Hit& hit,
                   const Ray& world_ray, const SampleContext& sample, TraceScratch& scratch,
                   TexturedHit& out) {
+  const Surface& surface =
+      evaluate_hit(scene, textures, hit, world_ray, sample, scratch, out.world, out.surface);
+  if (&surface != &out.surface) out.surface = surface;
+}
+
+const Surface& evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, const Hit& hit,
+                            const Ray& world_ray, const SampleContext& sample, TraceScratch& scratch,
+                            WorldHit& world, Surface& textured) {
   const PathNeeds needs =
       has_textures(scene, hit) ? needs_of(scene, textures, hit, world_ray.time, scratch, false) : PathNeeds{};
   if (needs.levels == 0) {
-    out.world = resolve_world(scene, hit, world_ray, scratch);
-    out.surface = surface_of(scene, hit);
-    return;
+    resolve_world(scene, hit, world_ray, scratch, world);
+    return surface_of(scene, hit);
   }
   const LocalHit local = resolve_local(scene, hit, world_ray, scratch);
   Evaluation e{scene,        hit, local, sample, {world_ray.time, scene.frame}, textured_point(local),
@@ -286,15 +293,21 @@ void evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, 
     for (const CompiledTexture& texture : textures.list(level.texture_list).textures)
       apply_texture(texture, e);
   }
-  out.world = {exact, e.normal, geometric, error, local.smooth, local.entering};
-  out.surface = e.surface;
+  world = {exact, e.normal, geometric, error, local.smooth, local.entering};
+  textured = e.surface;
+  return textured;
 }
 
 Transmittance evaluate_transmittance(const CompiledScene& scene, const CompiledTextures& textures,
                                      const Hit& hit, const Ray& world_ray, TraceScratch& scratch) {
-  const LocalHit local = resolve_local(scene, hit, world_ray, scratch);
   const PathNeeds needs =
       has_textures(scene, hit) ? needs_of(scene, textures, hit, world_ray.time, scratch, true) : PathNeeds{};
+  if (needs.levels == 0) {
+    // Where nothing is lost on the way, it does not matter which side this is.
+    const Surface& s = surface_of(scene, hit);
+    if (s.extinction == 1) return {s.body * s.transparency, 1, true};
+  }
+  const LocalHit local = resolve_local(scene, hit, world_ray, scratch);
   const auto result = [&local](const Surface& s) {
     return Transmittance{s.body * s.transparency, s.extinction, local.entering};
   };

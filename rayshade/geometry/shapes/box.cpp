@@ -12,22 +12,17 @@ SurfacePoint Box::surface_point(const Ray& ray, const ShapeHit& hit) const {
   // Near an edge the first face within the tolerance gives the normal, in the order +x, -x, +y, ...
   // (objects.md G17). The tolerance shrinks with small boxes, and never reaches across a thin one. The face
   // that was hit always matches.
-  const Vec3 extent = hi_ - lo_;
-  const double smallest = std::min({extent.x, extent.y, extent.z});
-  const double band = std::min(kEpsilon * std::min(1.0, max_abs(extent)), 0.25 * smallest);
   SurfacePoint out;
+  out.point = p;
   for (int axis = 0; axis < 3; ++axis) {
-    for (const bool high : {true, false}) {
-      const double distance = std::fabs(p[axis] - (high ? hi_ : lo_)[axis]);
-      if (!(distance < band || distance == 0)) continue;
-      out.point = p;
-      out.normal = {};
-      out.normal[axis] = high ? 1 : -1;
-      out.geometric_normal = out.normal;
-      out.error = distance;  // zero except where the normal is that of a neighbouring face
-      return out;
-    }
+    const double to_high = std::fabs(p[axis] - hi_[axis]), to_low = std::fabs(p[axis] - lo_[axis]);
+    const bool high = to_high < band_ || to_high == 0;
+    if (!high && !(to_low < band_ || to_low == 0)) continue;
+    out.normal[axis] = high ? 1 : -1;
+    out.error = high ? to_high : to_low;  // zero except where the normal is that of a neighbouring face
+    break;
   }
+  out.geometric_normal = out.normal;
   return out;
 }
 

@@ -14,7 +14,11 @@ namespace rayshade {
 
 class Box {
  public:
-  explicit Box(const shape::Box& box) : lo_(box.lo), hi_(box.hi) {}
+  explicit Box(const shape::Box& box) : lo_(box.lo), hi_(box.hi) {
+    const Vec3 extent = hi_ - lo_;
+    const double smallest = std::min({extent.x, extent.y, extent.z});
+    band_ = std::min(kEpsilon * std::min(1.0, max_abs(extent)), 0.25 * smallest);
+  }
 
   /// The entry t0 if t0 > lo, else the exit t1 if t1 >= lo; t <= hi. hit.part: 2 * axis, plus 1 for the high
   /// face.
@@ -73,6 +77,7 @@ class Box {
   }
 
   Vec3 lo_, hi_;
+  double band_;  ///< how near to an edge the first of its faces gives the normal (objects.md G17)
 };
 
 }  // namespace rayshade

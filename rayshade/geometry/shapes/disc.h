@@ -34,6 +34,9 @@ class Disc {
   /// (objects.md G15).
   TextureCoordinates texture_coordinates(const Vec3& x, const Vec3& facing_normal, const ShapeHit& hit) const;
   Bounds3 bounds() const;
+  const Vec3& center() const { return center_; }
+  const Vec3& normal() const { return normal_; }
+  double radius() const { return radius_; }
 
  private:
   Vec3 center_, normal_;

@@ -29,6 +29,8 @@ class Plane {
   /// Cartesian, from the plane's point; mirrored when seen from behind (objects.md G16).
   TextureCoordinates texture_coordinates(const Vec3& x, const Vec3& facing_normal, const ShapeHit& hit) const;
   Bounds3 bounds() const { return Bounds3::everything(); }
+  const Vec3& point() const { return point_; }
+  const Vec3& normal() const { return normal_; }
 
  private:
   Vec3 point_, normal_;

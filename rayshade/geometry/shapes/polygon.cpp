@@ -85,9 +85,10 @@ bool Polygon::intersect(const Ray& ray, double lo, double hi, ShapeHit& hit) con
   const double slope = dot(normal_, ray.direction);
   const double t = dot(normal_, point_ - ray.origin) / slope;
   if (!(t >= lo && t <= hi) || !hit_squarely(t, slope, 1, dot(ray.direction, ray.direction))) return false;
-  const Point2 c{ray.origin[u_axis_] + t * ray.direction[u_axis_],
-                 ray.origin[v_axis_] + t * ray.direction[v_axis_]};
-  if (!(c.u >= lo_.u && c.u <= hi_.u && c.v >= lo_.v && c.v <= hi_.v) || !winds_around(c)) return false;
+  if (!contains(ray.origin[u_axis_] + t * ray.direction[u_axis_],
+                ray.origin[v_axis_] + t * ray.direction[v_axis_])) {
+    return false;
+  }
   hit.t = t;
   return true;
 }

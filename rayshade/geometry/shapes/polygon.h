@@ -30,6 +30,13 @@ class Polygon {
   /// A vertex moved into the plane, as the inside test sees it.
   Vec3 corner(std::size_t i) const;
   const Vec3& normal() const { return normal_; }
+  /// The plane of the polygon, the axes of the inside test, and whether a point of the plane is inside.
+  const Vec3& point() const { return point_; }
+  int u_axis() const { return u_axis_; }
+  int v_axis() const { return v_axis_; }
+  bool contains(double u, double v) const {
+    return u >= lo_.u && u <= hi_.u && v >= lo_.v && v <= hi_.v && winds_around({u, v});
+  }
 
  private:
   struct Point2 {

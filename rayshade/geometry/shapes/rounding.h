@@ -15,7 +15,7 @@ namespace rayshade {
 inline constexpr double kRoundoff = 0x1p-53;
 
 /// Half an ulp in each coordinate of a stored point: at most kRoundoff |p| along any unit normal.
-inline double storage_error(const Vec3& p) { return kRoundoff * length(p); }
+inline double storage_error(const Vec3& p) { return kRoundoff * length_bound(p); }
 
 /// Relative error of each component of what normalize() returns: two squares' sums, root and quotient
 /// cost 3.5.

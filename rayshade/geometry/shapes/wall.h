@@ -45,6 +45,8 @@ class Wall {
   Vec3 end() const { return origin_ + length_ * frame_.rows[2]; }
   double start_radius() const { return radius_; }
   double end_radius() const { return end_radius_; }
+  double slope() const { return slope_; }
+  double reach_square() const { return reach_square_; }
   const AxisFrame& frame() const { return frame_; }
 
  private:

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "rayshade/geometry/pack_tracer.h"
+
+#include <bit>
+#include <limits>
+
+#include "rayshade/geometry/rank.h"
+
+namespace rayshade {
+namespace {
+
+constexpr std::int64_t kNoRank = std::numeric_limits<std::int64_t>::max();
+
+void add_one(std::array<std::uint32_t, RayPack::kMost>& counts, RayPack::Mask mask, int count) {
+  for (int i = 0; i < count; ++i) counts[static_cast<std::size_t>(i)] += mask >> i & 1;
+}
+
+}  // namespace
+
+template <class Query>
+void PackTracer::load_ray(const Query& query, int i) {
+  const Ray& ray = query.ray;
+  pack_.origin[0][i] = ray.origin.x, pack_.origin[1][i] = ray.origin.y, pack_.origin[2][i] = ray.origin.z;
+  pack_.direction[0][i] = ray.direction.x, pack_.direction[1][i] = ray.direction.y;
+  pack_.direction[2][i] = ray.direction.z;
+  pack_.lo[i] = query.lo;
+  pack_.t[i] = query.hi;
+  all_unit_ &= ray.unit;
+}
+
+void PackTracer::load(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
+                      const std::uint32_t* places, int count) {
+  pack_.count = count;
+  found_ = 0;
+  all_unit_ = true;
+  nearest_ = queries.data();
+  answers_ = answers.data();
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t place = places ? places[i] : static_cast<std::uint32_t>(i);
+    places_[static_cast<std::size_t>(i)] = place;
+    load_ray(queries[place], i);
+    pack_.rank[i] = kNoRank;
+    tests_[static_cast<std::size_t>(i)] = bounds_tests_[static_cast<std::size_t>(i)] = 0;
+  }
+  opacity_ = queries[places_[0]].mask;
+}
+
+void PackTracer::load(std::span<const OcclusionQuery> queries, const std::uint32_t* places, int count) {
+  pack_.count = count;
+  all_unit_ = true;
+  occlusion_ = queries.data();
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t place = places ? places[i] : static_cast<std::uint32_t>(i);
+    places_[static_cast<std::size_t>(i)] = place;
+    load_ray(queries[place], i);
+    tests_[static_cast<std::size_t>(i)] = bounds_tests_[static_cast<std::size_t>(i)] = 0;
+  }
+  opacity_ = queries[places_[0]].mask;
+}
+
+void PackTracer::count_bounds(RayPack::Mask mask) {
+  add_one(bounds_tests_, mask, pack_.count);
+  context_.bounds_tests += static_cast<std::uint32_t>(std::popcount(mask));
+}
+
+void PackTracer::count_tests(const Leaf& leaf, RayPack::Mask tested, RayPack::Mask hit) {
+  add_one(tests_, tested, pack_.count);
+  TraceCounts& counts = context_.scratch.counts;
+  const auto kind = static_cast<std::size_t>(leaf.kind);
+  counts.tests[kind] += static_cast<std::uint64_t>(std::popcount(tested));
+  counts.hits[kind] += static_cast<std::uint64_t>(std::popcount(hit));
+}
+
+RayPack::Mask PackTracer::improve(LeafId id, RayPack::Mask mask) {
+  const Leaf& leaf = context_.scene.leaves[id];
+  if ((leaf.opacity & opacity_) == 0) return 0;
+  if (vectorised(leaf)) {
+    const auto rank = static_cast<std::int64_t>(rank_of(leaf.kind, leaf.order));
+    const RayPack::Mask better = improve_pack(context_.scene, leaf, rank, pack_, mask);
+    count_tests(leaf, mask, better);
+    for (RayPack::Mask left = better; left != 0; left &= left - 1) pack_.leaf[std::countr_zero(left)] = id;
+    found_ |= better;
+    return better;
+  }
+  RayPack::Mask better = 0;
+  for (RayPack::Mask left = mask; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    const NearestQuery& query = nearest_[places_[i]];
+    Hit& hit = answers_[places_[i]].hit;
+    hit.shape.t = pack_.t[i];
+    hit.rank = pack_.rank[i] == kNoRank ? std::numeric_limits<std::uint64_t>::max()
+                                        : static_cast<std::uint64_t>(pack_.rank[i]);
+    const std::uint32_t tests = context_.tests, bounds_tests = context_.bounds_tests;
+    if (improve_by_leaf(context_, id, query.ray, query.lo, query.mask, 0, hit)) {
+      pack_.t[i] = hit.shape.t;
+      pack_.rank[i] = static_cast<std::int64_t>(hit.rank);
+      pack_.leaf[i] = kInAnswer;
+      better |= RayPack::Mask{1} << i;
+    }
+    tests_[i] += context_.tests - tests;
+    bounds_tests_[i] += context_.bounds_tests - bounds_tests;
+  }
+  found_ |= better;
+  return better;
+}
+
+void PackTracer::answer_nearest() {
+  for (int k = 0; k < pack_.count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    NearestAnswer& answer = answers_[places_[i]];
+    answer.tests = tests_[i];
+    answer.bounds_tests = bounds_tests_[i];
+    answer.found = false;
+    if ((found_ >> i & 1) == 0) continue;
+    const auto rank = static_cast<std::uint64_t>(pack_.rank[i]);
+    if (!before_far_limit(pack_.t[i], rank, nearest_[places_[i]].hi)) continue;
+    answer.found = true;
+    if (pack_.leaf[i] == kInAnswer) continue;
+    Hit& hit = answer.hit;
+    hit.shape = {pack_.t[i], pack_.a[i], pack_.b[i], static_cast<std::uint32_t>(pack_.part[i])};
+    hit.leaf = pack_.leaf[i];
+    hit.flag = EnterFlag::kUnset;
+    hit.rank = rank;
+    hit.instances.count = 0;
+  }
+}
+
+RayPack::Mask PackTracer::occlude(LeafId id, RayPack::Mask mask) {
+  const Leaf& leaf = context_.scene.leaves[id];
+  if (vectorised(leaf)) {
+    if ((leaf.opacity & ~opacity_) != 0) return 0;
+    const RayPack::Mask stopped = occlude_pack(context_.scene, leaf, pack_, mask);
+    count_tests(leaf, mask, stopped);
+    return stopped;
+  }
+  RayPack::Mask stopped = 0;
+  for (RayPack::Mask left = mask; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    const OcclusionQuery& query = occlusion_[places_[i]];
+    const std::uint32_t tests = context_.tests, bounds_tests = context_.bounds_tests;
+    if (leaf_occludes(context_, id, query.ray, query.lo, query.hi, query.mask)) stopped |= RayPack::Mask{1} << i;
+    tests_[i] += context_.tests - tests;
+    bounds_tests_[i] += context_.bounds_tests - bounds_tests;
+  }
+  return stopped;
+}
+
+void PackTracer::answer_occluded(std::span<OcclusionAnswer> answers, RayPack::Mask occluded) const {
+  for (int k = 0; k < pack_.count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    answers[places_[i]] = {(occluded >> i & 1) != 0, tests_[i], bounds_tests_[i]};
+  }
+}
+
+}  // namespace rayshade

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Queries as a pack of rays: loaded side by side, tested against leaf after leaf, answered. Leaves without a vector test
+// are tested ray by ray. Either way the answer is that of the scalar tests.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "rayshade/geometry/intersector.h"
+#include "rayshade/geometry/ray_pack.h"
+#include "rayshade/geometry/trace_context.h"
+
+namespace rayshade {
+
+/// Whether the world is small and simple enough to test every leaf with every ray, in packs.
+bool traces_in_packs(const CompiledScene& scene);
+
+class PackTracer {
+ public:
+  /// Fewer rays than this are not worth a pack.
+  static constexpr int kFewest = 4;
+
+  PackTracer(const CompiledScene& scene, TraceScratch& scratch) : context_(scene, scratch) {}
+
+  /// Loads queries (at most RayPack::kMost) that all ask for leaves of the same opacity. `places`: their numbers in
+  /// `queries`, or null for the first `count`.
+  void load(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers, const std::uint32_t* places,
+            int count);
+  /// Tests a leaf of the world; returns the rays for which it is the best hit now.
+  RayPack::Mask improve(LeafId leaf, RayPack::Mask mask);
+  /// Writes the answers of the nearest queries loaded.
+  void answer_nearest();
+
+  void load(std::span<const OcclusionQuery> queries, const std::uint32_t* places, int count);
+  /// Which rays of `mask` the leaf stops.
+  RayPack::Mask occlude(LeafId leaf, RayPack::Mask mask);
+  void answer_occluded(std::span<OcclusionAnswer> answers, RayPack::Mask occluded) const;
+
+  const RayPack& pack() const { return pack_; }
+  Opacity opacity() const { return opacity_; }
+  /// Counts a test of a box or of a block of candidates for every ray of the mask.
+  void count_bounds(RayPack::Mask mask);
+
+ private:
+  static constexpr std::uint32_t kInAnswer = kNone;  ///< the whole hit stands in the answer
+
+  template <class Query>
+  void load_ray(const Query& query, int i);
+  bool vectorised(const Leaf& leaf) const {
+    return has_vector_test(leaf.kind) && !leaf.animated && (all_unit_ || leaf.kind != LeafKind::kSphere);
+  }
+  void count_tests(const Leaf& leaf, RayPack::Mask tested, RayPack::Mask hit);
+
+  TraceContext context_;
+  RayPack pack_;
+  RayPack::Mask found_ = 0;
+  Opacity opacity_ = kAnyOpacity;
+  bool all_unit_ = true;
+  const NearestQuery* nearest_ = nullptr;
+  NearestAnswer* answers_ = nullptr;
+  const OcclusionQuery* occlusion_ = nullptr;
+  std::array<std::uint32_t, RayPack::kMost> places_;
+  std::array<std::uint32_t, RayPack::kMost> tests_, bounds_tests_;
+};
+
+}  // namespace rayshade

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// Up to 64 rays side by side, and the exact tests of common shapes for many of them at once.
+//
+// A vector test is, lane by lane, the scalar test of the shape: the same operations on the same doubles in the same
+// order, only + - * / and square root, comparisons and selections, never contracted; so it gives the same bits (rule
+// 3), and tests compare the two. Which instruction set runs is chosen by the processor at hand.
+#pragma once
+
+#include <cstdint>
+
+#include "rayshade/geometry/compiled_scene.h"
+
+namespace rayshade {
+
+struct RayPack {
+  static constexpr int kMost = 64;
+  using Mask = std::uint64_t;  ///< bit i: ray i
+
+  int count = 0;
+  alignas(64) double origin[3][kMost];
+  alignas(64) double direction[3][kMost];
+  alignas(64) double lo[kMost];
+  alignas(64) double t[kMost];           ///< far limit, or the best hit so far
+  alignas(64) std::int64_t rank[kMost];  ///< of the best hit; a rank fits 63 bits
+  alignas(64) double a[kMost], b[kMost];
+  alignas(64) double part[kMost];        ///< ShapeHit::part
+  std::uint32_t leaf[kMost];
+
+  Mask all() const { return count == kMost ? ~Mask{0} : (Mask{1} << count) - 1; }
+};
+
+/// Whether leaves of this kind have a vector test.
+constexpr bool has_vector_test(LeafKind kind) {
+  switch (kind) {
+    case LeafKind::kPlane:
+    case LeafKind::kSphere:
+    case LeafKind::kBox:
+    case LeafKind::kDisc:
+    case LeafKind::kCylinder:
+    case LeafKind::kCone:
+    case LeafKind::kTriangle:
+    case LeafKind::kSmoothTriangle:
+    case LeafKind::kUvTriangle:
+    case LeafKind::kPolygon:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Tests a leaf that has_vector_test and is not animated against the rays of `mask`, whose directions are of unit length
+/// as far as the renderer knows (Ray::unit). Those for which it is the better hit by (t, rank) get its t, rank, a, b and
+/// part; returns which. `leaf[]` is left to the caller.
+RayPack::Mask improve_pack(const CompiledScene& scene, const Leaf& leaf, std::int64_t rank, RayPack& pack,
+                           RayPack::Mask mask);
+/// Which rays of `mask` the leaf stops between lo and t (before the far limit in the sense of its kind).
+RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack, RayPack::Mask mask);
+/// Which rays of `mask` may meet the box within (lo, t), whatever the exact tests round (clip_to_box).
+RayPack::Mask clip_pack(const Bounds3& box, double condition, const RayPack& pack, RayPack::Mask mask);
+
+}  // namespace rayshade
