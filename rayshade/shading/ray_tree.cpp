@@ -154,7 +154,14 @@ void RayTree::start_batch(std::size_t first, std::size_t count, std::span<const 
                           std::span<SampleResult> results) {
   nearest_queries_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    nearest_queries_[i] = {samples[first + i].ray, kEpsilon, kFar, kAnyOpacity, RayKind::kEye, 0, kNone};
+    NearestQuery& query = nearest_queries_[i];
+    query.ray = samples[first + i].ray;
+    query.lo = kEpsilon;
+    query.hi = kFar;
+    query.mask = kAnyOpacity;
+    query.kind = RayKind::kEye;
+    query.depth = 0;
+    query.light = kNone;
   }
   ask_nearest();
   batch_nodes_.clear();
@@ -200,8 +207,14 @@ void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResu
   batch_answers_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Node& node = nodes_[batch_nodes_[i]];
-    const auto depth = static_cast<std::uint16_t>(std::min<std::uint32_t>(node.depth, 0xffff));
-    nearest_queries_[i] = {node.ray, node.lo, kFar, kAnyOpacity, node.kind, depth, kNone};
+    NearestQuery& query = nearest_queries_[i];
+    query.ray = node.ray;
+    query.lo = node.lo;
+    query.hi = kFar;
+    query.mask = kAnyOpacity;
+    query.kind = node.kind;
+    query.depth = static_cast<std::uint16_t>(std::min<std::uint32_t>(node.depth, 0xffff));
+    query.light = kNone;
     batch_answers_[i] = static_cast<std::uint32_t>(i);
   }
   ask_nearest();
@@ -306,7 +319,8 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
       std::array<double, 2> draws{};
       if (light.kind == LightKind::kArea) draws = uniform2(key, dimension(node.path, Purpose::kLight, l));
       const Illumination light_in = illuminate(light, world.point, draws[0], draws[1]);
-      PendingLight pending;
+      // Records are made where they stay: copies of fresh ones stall on their own stores.
+      PendingLight& pending = lights_.emplace_back();
       pending.shade = s;
       pending.light = static_cast<std::uint32_t>(l);
       double c = dot(light_in.direction, world.normal);
@@ -331,7 +345,7 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
         pending.skipped = true;
       }
       if (pending.skipped) {
-        if (observer_) lights_.push_back(pending);
+        if (!observer_) lights_.pop_back();
         continue;
       }
       if (!settings.shadows || light.no_shadow || surface.no_shadow) {
@@ -349,14 +363,16 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
           direction = target / far;
         }
         const RayStart start = shade.starts.toward(direction, 1, true);
-        shadow_queries_.push_back({{start.origin, direction, node.ray.time, true},
-                                   start.lo,
-                                   far,
-                                   mask,
-                                   static_cast<std::uint32_t>(l)});
-        shadow_owner_.push_back(static_cast<std::uint32_t>(lights_.size()));
+        OcclusionQuery& query = shadow_queries_.emplace_back();
+        query.ray.origin = start.origin;
+        query.ray.direction = direction;
+        query.ray.time = node.ray.time;
+        query.lo = start.lo;
+        query.hi = far;
+        query.mask = mask;
+        query.light = static_cast<std::uint32_t>(l);
+        shadow_owner_.push_back(static_cast<std::uint32_t>(lights_.size() - 1));
       }
-      lights_.push_back(pending);
     }
   }
 }
@@ -388,25 +404,38 @@ void RayTree::answer_shadows(std::span<SampleResult> results) {
 /// `through_all`: so do all, where a question about opaque leaves has not been asked because it would cost as
 /// much.
 void RayTree::follow_transparent(bool through_all, std::span<SampleResult> results) {
-  walks_.clear();
+  walks_.resize(shadow_queries_.size());
   for (std::uint32_t i = 0; i < shadow_queries_.size(); ++i) {
-    const bool opaque = lights_[shadow_owner_[i]].blocked;
-    walks_.push_back({shadow_owner_[i], i, shadow_queries_[i].lo, false, 1, 0, opaque, through_all});
+    Walk& walk = walks_[i];
+    walk.pending = shadow_owner_[i];
+    walk.query = i;
+    walk.near = shadow_queries_[i].lo;
+    walk.in_medium = false;
+    walk.extinction = 1;
+    walk.steps = 0;
+    walk.opaque = lights_[shadow_owner_[i]].blocked;
+    walk.through_all = through_all;
   }
   std::vector<NearestQuery>& queries = walk_queries_;
   while (!walks_.empty()) {
-    queries.resize(walks_.size());
+    if (queries.size() < walks_.size()) queries.resize(walks_.size());
     if (walk_answers_.size() < walks_.size()) walk_answers_.resize(walks_.size());
     const std::span<NearestAnswer> answers(walk_answers_.data(), walks_.size());
     for (std::size_t i = 0; i < walks_.size(); ++i) {
       const OcclusionQuery& query = shadow_queries_[walks_[i].query];
-      const Opacity mask = walks_[i].through_all ? kAnyOpacity : kTransparent;
-      queries[i] = {query.ray, walks_[i].near, query.hi, mask, RayKind::kShadow, 0, query.light};
+      NearestQuery& out = queries[i];
+      out.ray = query.ray;
+      out.lo = walks_[i].near;
+      out.hi = query.hi;
+      out.mask = walks_[i].through_all ? kAnyOpacity : kTransparent;
+      out.kind = RayKind::kShadow;
+      out.depth = 0;
+      out.light = query.light;
     }
-    scene_.intersector->nearest(queries, answers, scratch_);
+    scene_.intersector->nearest({queries.data(), walks_.size()}, answers, scratch_);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < walks_.size(); ++i) {
-      Walk walk = walks_[i];
+      Walk& walk = walks_[i];
       PendingLight& pending = lights_[walk.pending];
       const Node& node = nodes_[shades_[pending.shade].node];
       results[node.root].tests += answers[i].tests;
@@ -415,7 +444,8 @@ void RayTree::follow_transparent(bool through_all, std::span<SampleResult> resul
       if (walk.opaque && !walk.through_all) {
         walk.through_all = true;
         pending.blocked = false;
-        walks_[kept++] = walk;
+        if (kept != i) walks_[kept] = walk;
+        ++kept;
         continue;
       }
       if (walk.steps++ == 0) counts_.shadow_hits += !walk.opaque;
@@ -440,7 +470,8 @@ void RayTree::follow_transparent(bool through_all, std::span<SampleResult> resul
       const double step = kEpsilon * std::min(1.0, world_extent(*scene_.compiled, hit));
       walk.near = std::max(hit.t() + step, std::nextafter(hit.t(), kFar));
       if (walk.near >= queries[i].hi) continue;
-      walks_[kept++] = walk;
+      if (kept != i) walks_[kept] = walk;
+      ++kept;
     }
     walks_.resize(kept);
   }
@@ -496,7 +527,10 @@ void RayTree::spawn(Shade& shade) {
     const double square = length_squared(direction);
     const bool unit = std::fabs(square - 1) < 1e-8;
     const RayStart start = shade.starts.toward(direction, unit ? 1 : std::sqrt(square), false);
-    out.ray = {start.origin, direction, node.ray.time, unit};
+    out.ray.origin = start.origin;
+    out.ray.direction = direction;
+    out.ray.time = node.ray.time;
+    out.ray.unit = unit;
     out.lo = start.lo;
     out.contribution = contribution;
     out.path = child_path(node.path, slot);

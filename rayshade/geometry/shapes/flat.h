@@ -35,7 +35,7 @@ struct OnPlane {
 inline OnPlane onto_plane(const Vec3& p, const Vec3& on, const Vec3& unit_normal, double normal_error) {
   const Vec3 from = p - on;
   const Vec3 moved = p - dot(unit_normal, from) * unit_normal;
-  return {moved, (8 * kRoundoff + 2 * normal_error) * length_bound(from) + 2 * storage_error(moved)};
+  return {moved, (8 * kRoundoff + 2 * normal_error) * length(from) + 2 * storage_error(moved)};
 }
 
 }  // namespace rayshade

@@ -78,7 +78,7 @@ SurfacePoint Wall::surface_point(const Ray& ray, const ShapeHit& hit) const {
   out.geometric_normal = out.normal;
   // Of |q|: 8 for `distance` and z, 5 for the direction of the axis, 9 for e off the horizontal, 5 for the
   // products in `off`, 6 for cosine, sine and slope, 3 for the sum; of the radius the last two.
-  out.error = kRoundoff * (40 * length_bound(q) + 12 * std::fabs(radius_)) + 2 * storage_error(out.point);
+  out.error = kRoundoff * (40 * rayshade::length(q) + 12 * std::fabs(radius_)) + 2 * storage_error(out.point);
   return out;
 }
 

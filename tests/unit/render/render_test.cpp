@@ -101,7 +101,7 @@ TEST(RenderTest, ThreadsAndBlocksDoNotMatter) {
 TEST(RenderTest, TheHierarchyGivesThePictureOfBruteForce) {
   const Scene scene = parse(kEverything);
   RenderOptions brute;
-  brute.brute_force = true;
+  brute.intersector = IntersectorKind::kBruteForce;
   EXPECT_EQ(render(scene, {}, brute).rgba, render(scene).rgba);
 }
 
