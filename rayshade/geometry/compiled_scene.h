@@ -160,6 +160,8 @@ class CompiledScene {
   /// Leaves may change their numbers within their group. Throws MotionError where a transform is degenerate at the
   /// start of the frame. Returns whether anything changed.
   bool prepare_frame(const Interval& shutter, double frame, bool hierarchies);
+  /// Bounds, orders and hierarchies anew, over the present frame. (prepare_frame knows when that is needed.)
+  void rebuild(bool hierarchies);
   /// Largest extent of a leaf in the space of its group (planes: `scale`).
   double leaf_extent(LeafId leaf) const;
   /// Conservative bounds in the space of its group at any time of the interval. What CSG and instances refer to is
@@ -173,7 +175,6 @@ class CompiledScene {
 
  private:
   friend std::unique_ptr<CompiledScene> compile_scene(const Scene&, Provider&, const CompileOptions&);
-  void rebuild(bool hierarchies);
   void place_animated();
   void set_tolerances();
   void measure_extents();

@@ -149,17 +149,28 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider&
 
 Renderer::~Renderer() = default;
 
-void Renderer::make_intersector() {
-  if (options_.intersector != IntersectorKind::kFas) {
-    intersector_ = brute_force() ? make_brute_force(*compiled_) : make_hierarchy(*compiled_);
-    return;
-  }
+FasOptions Renderer::fas_options() const {
   FasOptions options;
   if (!camera_->has_lens()) options.eye = {RayClass::Kind::kPoint, camera_->eye()};
   for (const ShadingLight& light : frame_.shading.lights) options.lights.push_back(shadow_class(light));
   options.memory = options_.fas_memory > 0 ? options_.fas_memory : available_memory() / 4;
   options.split = options_.fas_split;
-  intersector_ = make_fas(*compiled_, options);
+  return options;
+}
+
+void Renderer::make_intersector() {
+  switch (options_.intersector) {
+    case IntersectorKind::kBruteForce:
+      intersector_ = make_brute_force(*compiled_);
+      break;
+    case IntersectorKind::kHierarchy:
+      intersector_ = make_hierarchy(*compiled_);
+      break;
+    case IntersectorKind::kFas:
+      intersector_ = make_fas(*compiled_, fas_options());
+      break;
+  }
+  if (options_.wrap) intersector_ = options_.wrap(*compiled_, std::move(intersector_));
 }
 
 void Renderer::prepare_frame(int frame) {

@@ -27,6 +27,8 @@ struct RenderOptions {
   IntersectorKind intersector = IntersectorKind::kFas;
   std::size_t fas_memory = 0;  ///< bytes for the hyper-trees; 0: a quarter of what the process may use
   fas::Split fas_split = fas::Split::kAdaptive;
+  /// Puts an intersector of one's own around (or in place of) the one made: to record or to check its answers.
+  std::function<std::unique_ptr<Intersector>(const CompiledScene&, std::unique_ptr<Intersector>)> wrap;
   bool layers = false;
   bool cost = false;
   bool sample_map = false;  ///< alpha tells which pixels are fully sampled
@@ -63,6 +65,8 @@ class Renderer {
 
   const RenderStatistics& statistics() const { return statistics_; }
   const CompiledScene& compiled() const { return *compiled_; }
+  /// The classes of rays of this scene, as make_fas takes them.
+  FasOptions fas_options() const;
 
  private:
   bool brute_force() const { return options_.intersector == IntersectorKind::kBruteForce; }

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+// usage: fas_bench [--samples N] [--repeat N] [--size N] SCENE...
+//
+// Records the rays of each scene and replays them through adaptive subdivision, through the hierarchy alone, and
+// through Embree's single rays (fast and robust) and 16-wide packets, in turn within one run, on one thread. Every
+// repetition starts without trees, and building is part of the time. Prints nanoseconds per ray of each class,
+// ratios, and memory; wrong answers of ours end the run.
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "bench/recording.h"
+#include "bench/yardstick.h"
+#include "rayshade/image/frame_buffer.h"
+
+namespace rayshade::bench {
+namespace {
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+enum Class { kEye, kShadow, kSecondary, kClasses };
+enum Way { kFas, kHierarchy, kFast, kRobust, kWays };
+
+struct Times {
+  double rays[kClasses] = {};
+  double seconds[kWays][kClasses] = {};
+  double mixed[kWays] = {};
+  double build[kWays] = {};
+  double packets = 0;
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+/// The queries of one class, span after span.
+struct Stream {
+  std::vector<NearestQuery> nearest;
+  std::vector<OcclusionQuery> shadow;
+  std::vector<std::size_t> spans;  ///< lengths
+  std::vector<std::size_t> places;  ///< in the recording
+};
+
+Stream stream_of(const Recording& r, Class which) {
+  Stream out;
+  for (const Recording::Span& span : r.spans) {
+    if (span.nearest == (which == kShadow)) continue;
+    std::size_t taken = 0;
+    for (std::size_t i = span.first; i < span.first + span.count; ++i) {
+      if (which == kShadow) {
+        out.shadow.push_back(r.shadow[i]);
+      } else if ((r.nearest[i].kind == RayKind::kEye) == (which == kEye)) {
+        out.nearest.push_back(r.nearest[i]);
+      } else {
+        continue;
+      }
+      out.places.push_back(i);
+      ++taken;
+    }
+    if (taken > 0) out.spans.push_back(taken);
+  }
+  return out;
+}
+
+[[noreturn]] void wrong(const char* scene, const char* what, std::size_t ray) {
+  std::fprintf(stderr, "%s: %s gives another answer for ray %zu\n", scene, what, ray);
+  std::exit(1);
+}
+
+/// Replays one class, or everything (`spans` of the recording), and checks the answers bit by bit.
+double replay(const Intersector& intersector, const Stream& s, const Recording& r, const char* scene, const char* name) {
+  TraceScratch scratch;
+  std::vector<NearestAnswer> nearest(1);
+  std::vector<OcclusionAnswer> shadow(1);
+  for (const std::size_t n : s.spans) {
+    if (n > nearest.size()) nearest.resize(n);
+    if (n > shadow.size()) shadow.resize(n);
+  }
+  double seconds = 0;
+  std::size_t first = 0;
+  for (const std::size_t n : s.spans) {
+    if (!s.shadow.empty()) {
+      const double start = now();
+      intersector.occluded({s.shadow.data() + first, n}, {shadow.data(), n}, scratch);
+      seconds += now() - start;
+      for (std::size_t i = 0; i < n; ++i)
+        if (shadow[i].occluded != (r.occluded[s.places[first + i]] != 0)) wrong(scene, name, s.places[first + i]);
+    } else {
+      const double start = now();
+      intersector.nearest({s.nearest.data() + first, n}, {nearest.data(), n}, scratch);
+      seconds += now() - start;
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t place = s.places[first + i];
+        const double t = nearest[i].found ? nearest[i].hit.t() : -1;
+        if (t != r.distance[place] || (nearest[i].found && nearest[i].hit.leaf != r.leaf[place])) wrong(scene, name, place);
+      }
+    }
+    first += n;
+  }
+  return seconds;
+}
+
+double replay_mixed(const Intersector& intersector, const Recording& r) {
+  TraceScratch scratch;
+  std::vector<NearestAnswer> nearest(8192);
+  std::vector<OcclusionAnswer> shadow(8192);
+  const double start = now();
+  for (const Recording::Span& span : r.spans) {
+    if (span.nearest)
+      intersector.nearest({r.nearest.data() + span.first, span.count}, {nearest.data(), span.count}, scratch);
+    else
+      intersector.occluded({r.shadow.data() + span.first, span.count}, {shadow.data(), span.count}, scratch);
+  }
+  return now() - start;
+}
+
+double replay_mixed(Yardstick& embree, const Recording& r) {
+  std::vector<double> distances(8192);
+  std::vector<std::uint8_t> occluded(8192);
+  const double start = now();
+  for (const Recording::Span& span : r.spans) {
+    if (span.nearest)
+      embree.nearest({r.nearest.data() + span.first, span.count}, distances.data());
+    else
+      embree.occluded({r.shadow.data() + span.first, span.count}, occluded.data());
+  }
+  return now() - start;
+}
+
+double replay(Yardstick& embree, const Stream& s, bool packets = false) {
+  std::vector<double> distances(s.nearest.size() + 16);
+  std::vector<std::uint8_t> occluded(s.shadow.size());
+  const double start = now();
+  if (!s.shadow.empty())
+    embree.occluded(s.shadow, occluded.data());
+  else if (packets)
+    embree.nearest16(s.nearest, distances.data());
+  else
+    embree.nearest(s.nearest, distances.data());
+  return now() - start;
+}
+
+struct Arguments {
+  int samples = 1, repeat = 3, size = 512;
+  std::vector<std::string> scenes;
+};
+
+Times measure(const std::string& path, const Arguments& arguments) {
+  FileProvider provider;
+  ParseResult parsed = parse_scene(provider, path, {});
+  if (!parsed.ok) {
+    std::fprintf(stderr, "%s: does not parse\n", path.c_str());
+    std::exit(1);
+  }
+  SettingsOverrides overrides;
+  overrides.screen = {{arguments.size, arguments.size}};
+  overrides.samples = arguments.samples;
+  overrides.jitter = false;
+  RenderSettings settings = resolve_settings(parsed.scene.settings, overrides);
+  settings.contrast = {-1, -1, -1};  // every sample of every pixel
+
+  Recording recording;
+  RenderOptions options;
+  options.intersector = IntersectorKind::kHierarchy;
+  options.wrap = [&](const CompiledScene&, std::unique_ptr<Intersector> inner) -> std::unique_ptr<Intersector> {
+    return std::make_unique<Recorder>(std::move(inner), recording);
+  };
+  Renderer renderer(parsed.scene, settings, provider, options);
+  FrameBufferOptions buffer;
+  buffer.width = settings.window_width();
+  buffer.height = settings.window_height();
+  FrameBuffer picture(buffer);
+  const std::atomic<bool> stop{false};
+  renderer.render_frame(0, picture, stop, {});
+
+  Times out;
+  const CompiledScene& scene = renderer.compiled();
+  FasOptions fas_options = renderer.fas_options();
+  Stream streams[kClasses];
+  for (int c = 0; c < kClasses; ++c) {
+    streams[c] = stream_of(recording, static_cast<Class>(c));
+    out.rays[c] = static_cast<double>(streams[c].places.size());
+  }
+  Yardstick fast(scene, false), robust(scene, true);
+  out.build[kFast] = fast.build_seconds();
+  out.build[kRobust] = robust.build_seconds();
+  {
+    const double start = now();
+    const_cast<CompiledScene&>(scene).rebuild(true);  // gives the same again
+    out.build[kHierarchy] = out.build[kFas] = now() - start;
+  }
+  std::vector<double> seconds[kWays][kClasses], mixed[kWays], packets;
+  for (int repetition = 0; repetition < arguments.repeat; ++repetition) {
+    for (int turn = 0; turn < kWays; ++turn) {
+      const int way = (turn + repetition) % kWays;
+      if (way == kFas || way == kHierarchy) {
+        const auto intersector = way == kFas ? make_fas(scene, fas_options) : make_hierarchy(scene);
+        for (int c = 0; c < kClasses; ++c)
+          seconds[way][c].push_back(replay(*intersector, streams[c], recording, path.c_str(), way == kFas ? "fas" : "hierarchy"));
+        const auto fresh = way == kFas ? make_fas(scene, fas_options) : make_hierarchy(scene);
+        mixed[way].push_back(replay_mixed(*fresh, recording));
+      } else {
+        _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+        _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+        Yardstick& embree = way == kFast ? fast : robust;
+        for (int c = 0; c < kClasses; ++c) seconds[way][c].push_back(replay(embree, streams[c]));
+        mixed[way].push_back(replay_mixed(embree, recording));
+        if (way == kFast) packets.push_back(replay(embree, streams[kEye], true));
+        _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_OFF);
+        _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_OFF);
+      }
+    }
+  }
+  for (int way = 0; way < kWays; ++way) {
+    for (int c = 0; c < kClasses; ++c) out.seconds[way][c] = median(seconds[way][c]);
+    out.mixed[way] = median(mixed[way]);
+  }
+  out.packets = median(packets);
+  return out;
+}
+
+}  // namespace
+
+int run(const Arguments& arguments) {
+  const char* ways[kWays] = {"fas", "hierarchy", "embree", "robust"};
+  double logs[6] = {};
+  int counts[6] = {};
+  const auto mean = [&](int which, double ratio) {
+    if (!(ratio > 0) || !std::isfinite(ratio)) return;
+    logs[which] += std::log(ratio);
+    ++counts[which];
+  };
+  std::printf("%d samples per pixel, %d x %d, medians of %d, ns per ray\n\n", arguments.samples * arguments.samples,
+              arguments.size, arguments.size, arguments.repeat);
+  std::printf("| scene | rays eye/shadow/secondary (M) | way | eye | shadow | secondary | mixed | build ms |\n");
+  std::printf("| --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  for (const std::string& path : arguments.scenes) {
+    const Times t = measure(path, arguments);
+    std::string name = path.substr(path.find_last_of('/') + 1);
+    name = name.substr(0, name.find('.'));
+    const double all = t.rays[0] + t.rays[1] + t.rays[2];
+    const auto ns = [&](double seconds, double rays) { return rays > 0 ? 1e9 * seconds / rays : 0; };
+    for (int way = 0; way < kWays; ++way) {
+      std::printf("| %s | %.2f/%.2f/%.2f | %s | %.0f | %.0f | %.0f | %.0f | %.1f |\n", name.c_str(), 1e-6 * t.rays[0],
+                  1e-6 * t.rays[1], 1e-6 * t.rays[2], ways[way], ns(t.seconds[way][0], t.rays[0]),
+                  ns(t.seconds[way][1], t.rays[1]), ns(t.seconds[way][2], t.rays[2]), ns(t.mixed[way], all),
+                  1e3 * t.build[way]);
+    }
+    const double total_fas = t.build[kFas] + t.seconds[kFas][0] + t.seconds[kFas][1] + t.seconds[kFas][2];
+    const double total_fast = t.build[kFast] + t.seconds[kFast][0] + t.seconds[kFast][1] + t.seconds[kFast][2];
+    const auto ratio = [&](Way a, Way b, Class c) { return t.rays[c] > 0 ? t.seconds[a][c] / t.seconds[b][c] : 0; };
+    std::printf("| %s | | fas / embree | %.2f | %.2f | %.2f | %.2f | all %.2f |\n", name.c_str(), ratio(kFas, kFast, kEye),
+                ratio(kFas, kFast, kShadow), ratio(kFas, kFast, kSecondary),
+                (t.mixed[kFas] + t.build[kFas]) / (t.mixed[kFast] + t.build[kFast]), total_fas / total_fast);
+    std::printf("| %s | | fas / packets | %.2f | | | | packets %.0f ns |\n", name.c_str(), t.seconds[kFas][kEye] / t.packets,
+                ns(t.packets, t.rays[0]));
+    std::printf("| %s | | hierarchy / robust | %.2f | %.2f | %.2f | %.2f | |\n", name.c_str(), ratio(kHierarchy, kRobust, kEye),
+                ratio(kHierarchy, kRobust, kShadow), ratio(kHierarchy, kRobust, kSecondary), t.mixed[kHierarchy] / t.mixed[kRobust]);
+    std::fflush(stdout);
+    mean(0, ratio(kFas, kFast, kEye));
+    mean(1, ratio(kFas, kFast, kShadow));
+    mean(2, ratio(kFas, kFast, kSecondary));
+    mean(3, (t.mixed[kFas] + t.build[kFas]) / (t.mixed[kFast] + t.build[kFast]));
+    mean(4, total_fas / total_fast);
+    mean(5, t.seconds[kFas][kEye] / t.packets);
+  }
+  const auto result = [&](int i) { return counts[i] > 0 ? std::exp(logs[i] / counts[i]) : 0; };
+  std::printf("\ngeometric means, fas / embree: eye %.2f shadow %.2f secondary %.2f mixed %.2f all %.2f; fas / packets: eye %.2f\n",
+              result(0), result(1), result(2), result(3), result(4), result(5));
+  return 0;
+}
+
+}  // namespace rayshade::bench
+
+int main(int count, char** values) {
+  rayshade::bench::Arguments arguments;
+  for (int i = 1; i < count; ++i) {
+    const auto number = [&](int& out) { out = i + 1 < count ? std::atoi(values[++i]) : out; };
+    if (std::strcmp(values[i], "--samples") == 0)
+      number(arguments.samples);
+    else if (std::strcmp(values[i], "--repeat") == 0)
+      number(arguments.repeat);
+    else if (std::strcmp(values[i], "--size") == 0)
+      number(arguments.size);
+    else
+      arguments.scenes.emplace_back(values[i]);
+  }
+  return rayshade::bench::run(arguments);
+}
