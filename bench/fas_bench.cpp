@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // usage: fas_bench [--samples N] [--repeat N] [--size N] SCENE...
 //
-// Records the rays of each scene and replays them through adaptive subdivision, through the hierarchy alone, and
-// through Embree's single rays (fast and robust) and 16-wide packets, in turn within one run, on one thread. Every
-// repetition starts without trees, and building is part of the time. Prints nanoseconds per ray of each class,
-// ratios, and memory; wrong answers of ours end the run.
+// Records the rays of each scene and replays them through adaptive subdivision, through the hierarchy alone,
+// and through Embree's single rays (fast and robust) and 16-wide packets, in turn within one run, on one
+// thread. Every repetition starts without trees, and building is part of the time. Prints nanoseconds per ray
+// of each class, ratios, and memory; wrong answers of ours end the run.
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 
@@ -48,7 +48,7 @@ double median(std::vector<double> values) {
 struct Stream {
   std::vector<NearestQuery> nearest;
   std::vector<OcclusionQuery> shadow;
-  std::vector<std::size_t> spans;  ///< lengths
+  std::vector<std::size_t> spans;   ///< lengths
   std::vector<std::size_t> places;  ///< in the recording
 };
 
@@ -79,7 +79,8 @@ Stream stream_of(const Recording& r, Class which) {
 }
 
 /// Replays one class, or everything (`spans` of the recording), and checks the answers bit by bit.
-double replay(const Intersector& intersector, const Stream& s, const Recording& r, const char* scene, const char* name) {
+double replay(const Intersector& intersector, const Stream& s, const Recording& r, const char* scene,
+              const char* name) {
   TraceScratch scratch;
   std::vector<NearestAnswer> nearest(1);
   std::vector<OcclusionAnswer> shadow(1);
@@ -95,7 +96,8 @@ double replay(const Intersector& intersector, const Stream& s, const Recording& 
       intersector.occluded({s.shadow.data() + first, n}, {shadow.data(), n}, scratch);
       seconds += now() - start;
       for (std::size_t i = 0; i < n; ++i)
-        if (shadow[i].occluded != (r.occluded[s.places[first + i]] != 0)) wrong(scene, name, s.places[first + i]);
+        if (shadow[i].occluded != (r.occluded[s.places[first + i]] != 0))
+          wrong(scene, name, s.places[first + i]);
     } else {
       const double start = now();
       intersector.nearest({s.nearest.data() + first, n}, {nearest.data(), n}, scratch);
@@ -103,7 +105,8 @@ double replay(const Intersector& intersector, const Stream& s, const Recording& 
       for (std::size_t i = 0; i < n; ++i) {
         const std::size_t place = s.places[first + i];
         const double t = nearest[i].found ? nearest[i].hit.t() : -1;
-        if (t != r.distance[place] || (nearest[i].found && nearest[i].hit.leaf != r.leaf[place])) wrong(scene, name, place);
+        if (t != r.distance[place] || (nearest[i].found && nearest[i].hit.leaf != r.leaf[place]))
+          wrong(scene, name, place);
       }
     }
     first += n;
@@ -173,7 +176,8 @@ Times measure(const std::string& path, const Arguments& arguments) {
   Recording recording;
   RenderOptions options;
   options.intersector = IntersectorKind::kHierarchy;
-  options.wrap = [&](const CompiledScene&, std::unique_ptr<Intersector> inner) -> std::unique_ptr<Intersector> {
+  options.wrap = [&](const CompiledScene&,
+                     std::unique_ptr<Intersector> inner) -> std::unique_ptr<Intersector> {
     return std::make_unique<Recorder>(std::move(inner), recording);
   };
   Renderer renderer(parsed.scene, settings, provider, options);
@@ -207,7 +211,8 @@ Times measure(const std::string& path, const Arguments& arguments) {
       if (way == kFas || way == kHierarchy) {
         const auto intersector = way == kFas ? make_fas(scene, fas_options) : make_hierarchy(scene);
         for (int c = 0; c < kClasses; ++c)
-          seconds[way][c].push_back(replay(*intersector, streams[c], recording, path.c_str(), way == kFas ? "fas" : "hierarchy"));
+          seconds[way][c].push_back(
+              replay(*intersector, streams[c], recording, path.c_str(), way == kFas ? "fas" : "hierarchy"));
         const auto fresh = way == kFas ? make_fas(scene, fas_options) : make_hierarchy(scene);
         mixed[way].push_back(replay_mixed(*fresh, recording));
       } else {
@@ -241,9 +246,10 @@ int run(const Arguments& arguments) {
     logs[which] += std::log(ratio);
     ++counts[which];
   };
-  std::printf("%d samples per pixel, %d x %d, medians of %d, ns per ray\n\n", arguments.samples * arguments.samples,
-              arguments.size, arguments.size, arguments.repeat);
-  std::printf("| scene | rays eye/shadow/secondary (M) | way | eye | shadow | secondary | mixed | build ms |\n");
+  std::printf("%d samples per pixel, %d x %d, medians of %d, ns per ray\n\n",
+              arguments.samples * arguments.samples, arguments.size, arguments.size, arguments.repeat);
+  std::printf(
+      "| scene | rays eye/shadow/secondary (M) | way | eye | shadow | secondary | mixed | build ms |\n");
   std::printf("| --- | --- | --- | --- | --- | --- | --- | --- |\n");
   for (const std::string& path : arguments.scenes) {
     const Times t = measure(path, arguments);
@@ -252,21 +258,25 @@ int run(const Arguments& arguments) {
     const double all = t.rays[0] + t.rays[1] + t.rays[2];
     const auto ns = [&](double seconds, double rays) { return rays > 0 ? 1e9 * seconds / rays : 0; };
     for (int way = 0; way < kWays; ++way) {
-      std::printf("| %s | %.2f/%.2f/%.2f | %s | %.0f | %.0f | %.0f | %.0f | %.1f |\n", name.c_str(), 1e-6 * t.rays[0],
-                  1e-6 * t.rays[1], 1e-6 * t.rays[2], ways[way], ns(t.seconds[way][0], t.rays[0]),
-                  ns(t.seconds[way][1], t.rays[1]), ns(t.seconds[way][2], t.rays[2]), ns(t.mixed[way], all),
-                  1e3 * t.build[way]);
+      std::printf("| %s | %.2f/%.2f/%.2f | %s | %.0f | %.0f | %.0f | %.0f | %.1f |\n", name.c_str(),
+                  1e-6 * t.rays[0], 1e-6 * t.rays[1], 1e-6 * t.rays[2], ways[way],
+                  ns(t.seconds[way][0], t.rays[0]), ns(t.seconds[way][1], t.rays[1]),
+                  ns(t.seconds[way][2], t.rays[2]), ns(t.mixed[way], all), 1e3 * t.build[way]);
     }
     const double total_fas = t.build[kFas] + t.seconds[kFas][0] + t.seconds[kFas][1] + t.seconds[kFas][2];
-    const double total_fast = t.build[kFast] + t.seconds[kFast][0] + t.seconds[kFast][1] + t.seconds[kFast][2];
-    const auto ratio = [&](Way a, Way b, Class c) { return t.rays[c] > 0 ? t.seconds[a][c] / t.seconds[b][c] : 0; };
-    std::printf("| %s | | fas / embree | %.2f | %.2f | %.2f | %.2f | all %.2f |\n", name.c_str(), ratio(kFas, kFast, kEye),
-                ratio(kFas, kFast, kShadow), ratio(kFas, kFast, kSecondary),
+    const double total_fast =
+        t.build[kFast] + t.seconds[kFast][0] + t.seconds[kFast][1] + t.seconds[kFast][2];
+    const auto ratio = [&](Way a, Way b, Class c) {
+      return t.rays[c] > 0 ? t.seconds[a][c] / t.seconds[b][c] : 0;
+    };
+    std::printf("| %s | | fas / embree | %.2f | %.2f | %.2f | %.2f | all %.2f |\n", name.c_str(),
+                ratio(kFas, kFast, kEye), ratio(kFas, kFast, kShadow), ratio(kFas, kFast, kSecondary),
                 (t.mixed[kFas] + t.build[kFas]) / (t.mixed[kFast] + t.build[kFast]), total_fas / total_fast);
-    std::printf("| %s | | fas / packets | %.2f | | | | packets %.0f ns |\n", name.c_str(), t.seconds[kFas][kEye] / t.packets,
-                ns(t.packets, t.rays[0]));
-    std::printf("| %s | | hierarchy / robust | %.2f | %.2f | %.2f | %.2f | |\n", name.c_str(), ratio(kHierarchy, kRobust, kEye),
-                ratio(kHierarchy, kRobust, kShadow), ratio(kHierarchy, kRobust, kSecondary), t.mixed[kHierarchy] / t.mixed[kRobust]);
+    std::printf("| %s | | fas / packets | %.2f | | | | packets %.0f ns |\n", name.c_str(),
+                t.seconds[kFas][kEye] / t.packets, ns(t.packets, t.rays[0]));
+    std::printf("| %s | | hierarchy / robust | %.2f | %.2f | %.2f | %.2f | |\n", name.c_str(),
+                ratio(kHierarchy, kRobust, kEye), ratio(kHierarchy, kRobust, kShadow),
+                ratio(kHierarchy, kRobust, kSecondary), t.mixed[kHierarchy] / t.mixed[kRobust]);
     std::fflush(stdout);
     mean(0, ratio(kFas, kFast, kEye));
     mean(1, ratio(kFas, kFast, kShadow));
@@ -276,8 +286,10 @@ int run(const Arguments& arguments) {
     mean(5, t.seconds[kFas][kEye] / t.packets);
   }
   const auto result = [&](int i) { return counts[i] > 0 ? std::exp(logs[i] / counts[i]) : 0; };
-  std::printf("\ngeometric means, fas / embree: eye %.2f shadow %.2f secondary %.2f mixed %.2f all %.2f; fas / packets: eye %.2f\n",
-              result(0), result(1), result(2), result(3), result(4), result(5));
+  std::printf(
+      "\ngeometric means, fas / embree: eye %.2f shadow %.2f secondary %.2f mixed %.2f all %.2f; fas / "
+      "packets: eye %.2f\n",
+      result(0), result(1), result(2), result(3), result(4), result(5));
   return 0;
 }
 

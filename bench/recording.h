@@ -20,7 +20,7 @@ struct Recording {
   std::vector<Span> spans;
   std::vector<NearestQuery> nearest;
   std::vector<OcclusionQuery> shadow;
-  std::vector<double> distance;       ///< of the nearest hits; negative: none
+  std::vector<double> distance;  ///< of the nearest hits; negative: none
   std::vector<LeafId> leaf;
   std::vector<std::uint8_t> occluded;
 };
@@ -29,6 +29,7 @@ struct Recording {
 class Recorder final : public Intersector {
  public:
   Recorder(std::unique_ptr<Intersector> inner, Recording& out) : inner_(std::move(inner)), out_(out) {}
+  std::size_t preferred_span() const override { return 512; }
   void nearest(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
                TraceScratch& scratch) const override {
     inner_->nearest(queries, answers, scratch);

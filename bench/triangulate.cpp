@@ -18,7 +18,7 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<fas::Poi
   }
   const std::size_t drop = std::fabs(n[0]) > std::fabs(n[1]) && std::fabs(n[0]) > std::fabs(n[2]) ? 0
                            : std::fabs(n[1]) > std::fabs(n[2])                                    ? 1
-                                                                                                   : 2;
+                                                                                                  : 2;
   const std::size_t a = (drop + 1) % 3, b = (drop + 2) % 3;
   const double turn = n[drop] < 0 ? -1 : 1;
   const auto area = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
@@ -31,7 +31,8 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<fas::Poi
   while (left.size() > 3) {
     bool cut = false;
     for (std::size_t i = 0; i < left.size() && !cut; ++i) {
-      const std::uint32_t p = left[(i + left.size() - 1) % left.size()], q = left[i], r = left[(i + 1) % left.size()];
+      const std::uint32_t p = left[(i + left.size() - 1) % left.size()], q = left[i],
+                          r = left[(i + 1) % left.size()];
       if (!(area(p, q, r) > 0)) continue;
       bool ear = true;
       for (const std::uint32_t s : left) {

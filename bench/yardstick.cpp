@@ -32,9 +32,14 @@ Ray ray_of(float ox, float oy, float oz, float dx, float dy, float dz) {
 void bounds(const RTCBoundsFunctionArguments* a) {
   const auto& user = *static_cast<const UserGeometry*>(a->geometryUserPtr);
   const Bounds3 box = user.scene->leaf_bounds((*user.leaves)[a->primID], user.scene->shutter, 0);
-  const auto down = [](double x) { return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity()); };
-  const auto up = [](double x) { return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity()); };
-  *a->bounds_o = {down(box.lo.x), down(box.lo.y), down(box.lo.z), 0, up(box.hi.x), up(box.hi.y), up(box.hi.z), 0};
+  const auto down = [](double x) {
+    return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity());
+  };
+  const auto up = [](double x) {
+    return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+  };
+  *a->bounds_o = {down(box.lo.x), down(box.lo.y), down(box.lo.z), 0,
+                  up(box.hi.x),   up(box.hi.y),   up(box.hi.z),   0};
 }
 
 void intersect(const RTCIntersectFunctionNArguments* a) {
@@ -43,8 +48,9 @@ void intersect(const RTCIntersectFunctionNArguments* a) {
   RTCHitN* hits = RTCRayHitN_HitN(a->rayhit, a->N);
   for (unsigned i = 0; i < a->N; ++i) {
     if (a->valid[i] == 0) continue;
-    const Ray ray = ray_of(RTCRayN_org_x(rays, a->N, i), RTCRayN_org_y(rays, a->N, i), RTCRayN_org_z(rays, a->N, i),
-                           RTCRayN_dir_x(rays, a->N, i), RTCRayN_dir_y(rays, a->N, i), RTCRayN_dir_z(rays, a->N, i));
+    const Ray ray =
+        ray_of(RTCRayN_org_x(rays, a->N, i), RTCRayN_org_y(rays, a->N, i), RTCRayN_org_z(rays, a->N, i),
+               RTCRayN_dir_x(rays, a->N, i), RTCRayN_dir_y(rays, a->N, i), RTCRayN_dir_z(rays, a->N, i));
     Hit hit;
     if (!exact_nearest(*user.scene, (*user.leaves)[a->primID], ray, RTCRayN_tnear(rays, a->N, i),
                        RTCRayN_tfar(rays, a->N, i), 0, *user.scratch, hit)) {
@@ -60,8 +66,9 @@ void occlude(const RTCOccludedFunctionNArguments* a) {
   const auto& user = *static_cast<const UserGeometry*>(a->geometryUserPtr);
   for (unsigned i = 0; i < a->N; ++i) {
     if (a->valid[i] == 0) continue;
-    const Ray ray = ray_of(RTCRayN_org_x(a->ray, a->N, i), RTCRayN_org_y(a->ray, a->N, i), RTCRayN_org_z(a->ray, a->N, i),
-                           RTCRayN_dir_x(a->ray, a->N, i), RTCRayN_dir_y(a->ray, a->N, i), RTCRayN_dir_z(a->ray, a->N, i));
+    const Ray ray = ray_of(RTCRayN_org_x(a->ray, a->N, i), RTCRayN_org_y(a->ray, a->N, i),
+                           RTCRayN_org_z(a->ray, a->N, i), RTCRayN_dir_x(a->ray, a->N, i),
+                           RTCRayN_dir_y(a->ray, a->N, i), RTCRayN_dir_z(a->ray, a->N, i));
     Hit hit;
     if (exact_nearest(*user.scene, (*user.leaves)[a->primID], ray, RTCRayN_tnear(a->ray, a->N, i),
                       RTCRayN_tfar(a->ray, a->N, i), 0, *user.scratch, hit)) {
@@ -84,9 +91,11 @@ Yardstick::Yardstick(const CompiledScene& scene, bool robust) : scene_(scene) {
   const TreeCandidates candidates(scene, 0);
   fas::Geometry geometry;
   for (LeafId id = world.first; id < world.first + world.count; ++id) {
-    if (id >= world.first + world.unbounded) candidates.geometry(id - world.first - world.unbounded, geometry);
+    if (id >= world.first + world.unbounded)
+      candidates.geometry(id - world.first - world.unbounded, geometry);
     using Form = fas::Geometry::Form;
-    if (id < world.first + world.unbounded || (geometry.form != Form::kPoints && geometry.form != Form::kPolygon)) {
+    if (id < world.first + world.unbounded ||
+        (geometry.form != Form::kPoints && geometry.form != Form::kPolygon)) {
       others_.push_back(id);
       continue;
     }
@@ -177,7 +186,8 @@ void Yardstick::nearest16(std::span<const NearestQuery> queries, double* distanc
     for (std::size_t i = 0; i < 16; ++i) {
       const NearestQuery& query = queries[first + std::min(i, n - 1)];
       valid[i] = i < n ? -1 : 0;
-      q.ray.org_x[i] = static_cast<float>(query.ray.origin.x), q.ray.org_y[i] = static_cast<float>(query.ray.origin.y);
+      q.ray.org_x[i] = static_cast<float>(query.ray.origin.x),
+      q.ray.org_y[i] = static_cast<float>(query.ray.origin.y);
       q.ray.org_z[i] = static_cast<float>(query.ray.origin.z);
       q.ray.dir_x[i] = static_cast<float>(query.ray.direction.x);
       q.ray.dir_y[i] = static_cast<float>(query.ray.direction.y);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Embree 3 over the leaves of a compiled world, in its best form: triangles (polygons cut up) as its own, everything
-// else as user geometry with the very exact tests that we use. For benchmarks only.
+// Embree 3 over the leaves of a compiled world, in its best form: triangles (polygons cut up) as its own,
+// everything else as user geometry with the very exact tests that we use. For benchmarks only.
 #pragma once
 
 #include <embree3/rtcore.h>

@@ -75,6 +75,49 @@ HWY_ATTR void match_many(const std::uint8_t* block, int n, bool cuts, const std:
   }
 }
 
+HWY_ATTR std::uint64_t match_rays(const std::uint8_t* block, std::size_t s, std::size_t i, bool cuts,
+                                  const std::uint8_t* u, const std::uint8_t* v, const std::uint8_t* z,
+                                  int count) {
+  const hn::CappedTag<std::uint8_t, 64> d;
+  const auto low_u = hn::Set(d, block[i]), high_u = hn::Set(d, block[s + i]);
+  const auto low_v = hn::Set(d, block[2 * s + i]), high_v = hn::Set(d, block[3 * s + i]);
+  const auto low_z = hn::Set(d, block[4 * s + i]);
+  std::uint64_t mask = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); k += hn::Lanes(d)) {
+    const auto pu = hn::LoadU(d, u + k), pv = hn::LoadU(d, v + k), pz = hn::LoadU(d, z + k);
+    const auto outside_u = hn::Or(hn::SaturatedSub(low_u, pu), hn::SaturatedSub(pu, high_u));
+    const auto outside_v = hn::Or(hn::SaturatedSub(low_v, pv), hn::SaturatedSub(pv, high_v));
+    const auto outside = hn::Or(hn::Or(outside_u, outside_v), hn::SaturatedSub(low_z, pz));
+    std::uint64_t bits = 0;
+    hn::StoreMaskBits(d, hn::Eq(outside, hn::Zero(d)), reinterpret_cast<std::uint8_t*>(&bits));
+    mask |= bits << k;
+  }
+  if (count < 64) mask &= (std::uint64_t{1} << count) - 1;
+  if (!cuts || mask == 0) return mask;
+  const hn::CappedTag<std::int16_t, 32> d16;
+  const hn::Rebind<std::uint8_t, decltype(d16)> d8;
+  const auto* ab = reinterpret_cast<const std::int8_t*>(block + Block::kAreaBytes * s);
+  const std::uint8_t* c = block + (Block::kAreaBytes + 6) * s;
+  const auto half = hn::Set(d16, 128);
+  std::uint64_t within = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); k += hn::Lanes(d16)) {
+    const auto pu = hn::Sub(hn::PromoteTo(d16, hn::LoadU(d8, u + k)), half);
+    const auto pv = hn::Sub(hn::PromoteTo(d16, hn::LoadU(d8, v + k)), half);
+    auto least = hn::Zero(d16);
+    for (std::size_t e = 0; e < 3; ++e) {
+      std::int16_t offset = 0;
+      std::memcpy(&offset, c + 2 * e * s + 2 * i, sizeof offset);
+      const auto a = hn::Set(d16, static_cast<std::int16_t>(ab[2 * e * s + i]));
+      const auto b = hn::Set(d16, static_cast<std::int16_t>(ab[(2 * e + 1) * s + i]));
+      least = hn::Min(least, hn::SaturatedAdd(hn::Add(hn::Mul(a, pu), hn::Mul(b, pv)), hn::Set(d16, offset)));
+    }
+    std::uint64_t bits = 0;
+    hn::StoreMaskBits(d16, hn::Eq(least, hn::Zero(d16)), reinterpret_cast<std::uint8_t*>(&bits));
+    within |= bits << k;
+  }
+  return mask & within;
+}
+
 const char* name() { return hwy::TargetName(HWY_TARGET); }
 
 }  // namespace fas::HWY_NAMESPACE
@@ -86,6 +129,7 @@ namespace {
 
 HWY_EXPORT(match);
 HWY_EXPORT(match_many);
+HWY_EXPORT(match_rays);
 HWY_EXPORT(name);
 
 std::uint64_t scalar_match(const std::uint8_t* block, int n, bool cuts, Probe probe) {
@@ -111,18 +155,38 @@ void scalar_match_many(const std::uint8_t* block, int n, bool cuts, const std::u
   for (int k = 0; k < count; ++k) masks[k] = scalar_match(block, n, cuts, {u[k], v[k], z[k]});
 }
 
+std::uint64_t scalar_match_rays(const std::uint8_t* block, std::size_t s, std::size_t i, bool cuts,
+                                const std::uint8_t* u, const std::uint8_t* v, const std::uint8_t* z,
+                                int count) {
+  const auto* ab = reinterpret_cast<const std::int8_t*>(block + Block::kAreaBytes * s);
+  const std::uint8_t* c = block + (Block::kAreaBytes + 6) * s;
+  std::uint64_t mask = 0;
+  for (int k = 0; k < count; ++k) {
+    bool inside = block[i] <= u[k] && u[k] <= block[s + i] && block[2 * s + i] <= v[k] &&
+                  v[k] <= block[3 * s + i] && block[4 * s + i] <= z[k];
+    for (std::size_t e = 0; cuts && inside && e < 3; ++e) {
+      std::int16_t offset = 0;
+      std::memcpy(&offset, c + 2 * e * s + 2 * i, sizeof offset);
+      inside = ab[2 * e * s + i] * (u[k] - 128) + ab[(2 * e + 1) * s + i] * (v[k] - 128) + offset >= 0;
+    }
+    if (inside) mask |= std::uint64_t{1} << k;
+  }
+  return mask;
+}
+
 }  // namespace
 
 const Kernels& kernels() {
   static const Kernels chosen = [] {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    return Kernels{&HWY_DYNAMIC_DISPATCH(match), &HWY_DYNAMIC_DISPATCH(match_many), HWY_DYNAMIC_DISPATCH(name)()};
+    return Kernels{&HWY_DYNAMIC_DISPATCH(match), &HWY_DYNAMIC_DISPATCH(match_many),
+                   &HWY_DYNAMIC_DISPATCH(match_rays), HWY_DYNAMIC_DISPATCH(name)()};
   }();
   return chosen;
 }
 
 const Kernels& scalar_kernels() {
-  static const Kernels plain{scalar_match, scalar_match_many, "scalar"};
+  static const Kernels plain{scalar_match, scalar_match_many, scalar_match_rays, "scalar"};
   return plain;
 }
 

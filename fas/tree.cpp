@@ -552,7 +552,8 @@ void HyperTree::split_leaf(const Query& query, ThreadState& state, TreeCache& ca
   if (pool_.exhausted() || mutable_leaf.splitting.exchange(1, std::memory_order_acq_rel) != 0) return;
   Root& root = roots_[static_cast<std::size_t>(query.face)];
   Node* node = root.node;
-  const std::uint32_t u = cache.u, v = cache.v;
+  const auto u = static_cast<std::uint32_t>((query.u - root.u0) * root.scale);
+  const auto v = static_cast<std::uint32_t>((query.v - root.v0) * root.scale);
   int shift = kBits;
   for (;;) {
     const std::uintptr_t now = node->state.load(std::memory_order_acquire);

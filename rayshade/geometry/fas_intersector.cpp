@@ -3,7 +3,11 @@
 // space (eye rays of a pinhole, shadow rays of point, spot and directional lights) are answered by the
 // hyper-tree of their class, all others by the world's hierarchy; what is not bounded is tested apart. Trees
 // only choose which leaves are tested.
-#include "fas/tree.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "fas/batch.h"
 #include "rayshade/geometry/intersector.h"
 #include "rayshade/geometry/pack_tracer.h"
 #include "rayshade/geometry/trace_context.h"
@@ -11,6 +15,21 @@
 
 namespace rayshade {
 namespace {
+
+/// What one thread needs to sort a span by leaf.
+struct Batch {
+  fas::LeafGroups groups;
+  std::vector<std::uint8_t> u, v;
+  std::vector<double> depth;  ///< eye rays: depth per t; rays toward lights: where they start
+  std::vector<std::uint32_t> outside;
+  void resize(std::size_t count) {
+    if (u.size() >= count) return;
+    u.resize(count);
+    v.resize(count);
+    depth.resize(count);
+    outside.resize(count);
+  }
+};
 
 class FasIntersector final : public Intersector {
  public:
@@ -24,37 +43,26 @@ class FasIntersector final : public Intersector {
     grow();
   }
 
+  /// Rays of a span share leaves, the more the longer it is.
+  std::size_t preferred_span() const override { return 512; }
+
   void nearest(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
                TraceScratch& scratch) const override {
     fas::ThreadState& state = state_of(scratch);
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-      const NearestQuery& query = queries[i];
-      NearestAnswer& answer = answers[i];
-      TraceContext context(scene_, scratch);
-      start_search(answer.hit, query.hi);
-      bool found = false;
-      if (query.kind != RayKind::kEye || !nearest_from_eye(context, state, query, answer.hit, found)) {
-        found = improve_by_group(context, 0, query.ray, query.lo, query.mask, 0, answer.hit);
-      }
-      answer.found = found && before_far_limit(answer.hit, query.hi);
-      answer.tests = context.tests;
-      answer.bounds_tests = context.bounds_tests;
+    Batch& batch = batch_of(scratch);
+    for (std::size_t first = 0; first < queries.size(); first += kMostAtOnce) {
+      const std::size_t count = std::min(kMostAtOnce, queries.size() - first);
+      nearest_batch(queries.subspan(first, count), answers.subspan(first, count), state, batch, scratch);
     }
   }
 
   void occluded(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
                 TraceScratch& scratch) const override {
     fas::ThreadState& state = state_of(scratch);
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-      const OcclusionQuery& query = queries[i];
-      TraceContext context(scene_, scratch);
-      bool occluded = false;
-      if (!occluded_toward_light(context, state, query, occluded)) {
-        occluded = group_occludes(context, 0, query.ray, query.lo, query.hi, query.mask);
-      }
-      answers[i].occluded = occluded;
-      answers[i].tests = context.tests;
-      answers[i].bounds_tests = context.bounds_tests;
+    Batch& batch = batch_of(scratch);
+    for (std::size_t first = 0; first < queries.size(); first += kMostAtOnce) {
+      const std::size_t count = std::min(kMostAtOnce, queries.size() - first);
+      occluded_batch(queries.subspan(first, count), answers.subspan(first, count), state, batch, scratch);
     }
   }
 
@@ -82,47 +90,184 @@ class FasIntersector final : public Intersector {
     return *scratch.trees;
   }
 
-  /// False: the hierarchy must be asked.
-  bool nearest_from_eye(TraceContext& context, fas::ThreadState& state, const NearestQuery& query, Hit& best,
-                        bool& found) const {
-    if (!eye_) return false;
-    const Vec3 &o = query.ray.origin, &d = query.ray.direction;
-    const fas::Point& apex = eye_->view().apex;
-    if (o.x != apex[0] || o.y != apex[1] || o.z != apex[2] || !is_finite(d) || d == Vec3{}) return false;
-    const double direction[3] = {d.x, d.y, d.z};
-    const LeafId bounded = world_.first + world_.unbounded;
-    const auto test = [&](std::uint32_t candidate) {
-      const bool improved =
-          improve_by_leaf(context, bounded + candidate, query.ray, query.lo, query.mask, 0, best);
-      found |= improved;
-      return improved;
-    };
-    for (LeafId id = world_.first; id < bounded; ++id) {
-      found |= improve_by_leaf(context, id, query.ray, query.lo, query.mask, 0, best);
-    }
-    const auto place = fas::nearest_from_apex(
-        *eye_, state, direction, [&] { return best.shape.t; }, test);
-    return place != fas::HyperTree::Place::kElsewhere;
+  static constexpr std::size_t kMostAtOnce = 4096;
+
+  Batch& batch_of(TraceScratch& scratch) const {
+    if (!scratch.batch) scratch.batch = std::make_shared<Batch>();
+    return *static_cast<Batch*>(scratch.batch.get());
   }
 
-  bool occluded_toward_light(TraceContext& context, fas::ThreadState& state, const OcclusionQuery& query,
-                             bool& occluded) const {
-    if (query.light >= lights_.size() || !lights_[query.light]) return false;
-    fas::HyperTree& tree = *lights_[query.light];
+  void ask_hierarchy(const NearestQuery& query, NearestAnswer& answer, TraceScratch& scratch) const {
+    TraceContext context(scene_, scratch);
+    start_search(answer.hit, query.hi);
+    answer.found = improve_by_group(context, 0, query.ray, query.lo, query.mask, 0, answer.hit) &&
+                   before_far_limit(answer.hit, query.hi);
+    answer.tests = context.tests;
+    answer.bounds_tests = context.bounds_tests;
+  }
+
+  void ask_hierarchy(const OcclusionQuery& query, OcclusionAnswer& answer, TraceScratch& scratch) const {
+    TraceContext context(scene_, scratch);
+    answer.occluded = group_occludes(context, 0, query.ray, query.lo, query.hi, query.mask);
+    answer.tests = context.tests;
+    answer.bounds_tests = context.bounds_tests;
+  }
+
+  bool from_eye(const NearestQuery& query) const {
+    if (query.kind != RayKind::kEye || !eye_ || query.mask != kAnyOpacity) return false;
     const Vec3 &o = query.ray.origin, &d = query.ray.direction;
-    const double origin[3] = {o.x, o.y, o.z}, direction[3] = {d.x, d.y, d.z};
-    if (!fas::aims_at(tree.view(), origin, direction)) return false;
-    const LeafId bounded = world_.first + world_.unbounded;
-    const auto test = [&](std::uint32_t candidate) {
-      return leaf_occludes(context, bounded + candidate, query.ray, query.lo, query.hi, query.mask);
-    };
-    for (LeafId id = world_.first; id < bounded; ++id) {
-      if (leaf_occludes(context, id, query.ray, query.lo, query.hi, query.mask)) {
-        occluded = true;
-        return true;
+    const fas::Point& apex = eye_->view().apex;
+    return o.x == apex[0] && o.y == apex[1] && o.z == apex[2] && max_abs(d) > 0 && is_finite(d);
+  }
+
+  void nearest_batch(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
+                     fas::ThreadState& state, Batch& batch, TraceScratch& scratch) const {
+    batch.groups.clear();
+    batch.resize(queries.size());
+    const auto count = static_cast<std::uint32_t>(queries.size());
+    std::uint32_t outside = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const NearestQuery& query = queries[i];
+      if (!from_eye(query)) {
+        ask_hierarchy(query, answers[i], scratch);
+        continue;
+      }
+      const double d[3] = {query.ray.direction.x, query.ray.direction.y, query.ray.direction.z};
+      const fas::HyperTree::Query place = eye_->from_apex(d);
+      fas::TreeCache& cache = state.cache(eye_->number());
+      const fas::Leaf* leaf = nullptr;
+      switch (eye_->find(place, state, cache, leaf, batch.u[i], batch.v[i])) {
+        case fas::HyperTree::Place::kElsewhere:
+          ++cache.counts.elsewhere;
+          ask_hierarchy(query, answers[i], scratch);
+          break;
+        case fas::HyperTree::Place::kNothing:
+          ++cache.counts.outside;
+          ++cache.counts.rays;
+          batch.outside[outside++] = i;
+          break;
+        case fas::HyperTree::Place::kLeaf:
+          batch.depth[i] = std::fabs(d[place.face >> 1]);
+          batch.groups.add(*eye_, leaf, place, i, count);
+          break;
       }
     }
-    return fas::occluded_toward(tree, state, origin, test, occluded) != fas::HyperTree::Place::kElsewhere;
+    PackTracer tracer(scene_, scratch);
+    for (std::uint32_t first = 0; first < outside; first += RayPack::kMost) {
+      const int n = static_cast<int>(std::min<std::uint32_t>(RayPack::kMost, outside - first));
+      tracer.load(queries, answers, batch.outside.data() + first, n);
+      improve_by_unbounded(tracer);
+      tracer.answer_nearest();
+    }
+    const LeafId bounded = world_.first + world_.unbounded;
+    for (const fas::LeafGroups::Group& group : batch.groups.groups()) {
+      std::uint32_t place = group.first, left = group.count;
+      while (left > 0) {
+        fas::GroupProbe probe;
+        std::array<std::uint32_t, RayPack::kMost> places;
+        for (; left > 0 && probe.count < RayPack::kMost; --left, place = batch.groups.next(place)) {
+          places[static_cast<std::size_t>(probe.count)] = place;
+          probe.u[probe.count] = batch.u[place];
+          probe.v[probe.count] = batch.v[place];
+          ++probe.count;
+        }
+        tracer.load(queries, answers, places.data(), probe.count);
+        improve_by_unbounded(tracer);
+        fas::nearest_in_group(
+            *group.tree, state, *group.leaf, group.any, probe,
+            [&](std::uint32_t candidate, std::uint64_t mask) {
+              return tracer.improve(bounded + candidate, mask);
+            },
+            [&](int i) { return tracer.pack().t[i] * batch.depth[places[static_cast<std::size_t>(i)]]; });
+        tracer.count_bounds(tracer.pack().all());
+        tracer.answer_nearest();
+      }
+    }
+  }
+
+  void improve_by_unbounded(PackTracer& tracer) const {
+    for (std::uint32_t k = 0; k < world_.unbounded; ++k)
+      tracer.improve(world_.first + k, tracer.pack().all());
+  }
+
+  void occluded_batch(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
+                      fas::ThreadState& state, Batch& batch, TraceScratch& scratch) const {
+    batch.groups.clear();
+    batch.resize(queries.size());
+    const auto count = static_cast<std::uint32_t>(queries.size());
+    std::uint32_t outside = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const OcclusionQuery& query = queries[i];
+      fas::HyperTree* tree = query.light < lights_.size() ? lights_[query.light].get() : nullptr;
+      const Vec3 &o = query.ray.origin, &d = query.ray.direction;
+      const double origin[3] = {o.x, o.y, o.z}, direction[3] = {d.x, d.y, d.z};
+      if (!tree || query.mask != queries[0].mask || !fas::aims_at(tree->view(), origin, direction)) {
+        ask_hierarchy(query, answers[i], scratch);
+        continue;
+      }
+      const fas::HyperTree::Query place = tree->toward(origin);
+      fas::TreeCache& cache = state.cache(tree->number());
+      const fas::Leaf* leaf = nullptr;
+      switch (tree->find(place, state, cache, leaf, batch.u[i], batch.v[i])) {
+        case fas::HyperTree::Place::kElsewhere:
+          ++cache.counts.elsewhere;
+          ask_hierarchy(query, answers[i], scratch);
+          break;
+        case fas::HyperTree::Place::kNothing:
+          ++cache.counts.outside;
+          ++cache.counts.rays;
+          if (world_.unbounded > 0)
+            batch.outside[outside++] = i;
+          else
+            answers[i] = {};
+          break;
+        case fas::HyperTree::Place::kLeaf:
+          batch.depth[i] = place.depth;
+          batch.groups.add(*tree, leaf, place, i, count);
+          break;
+      }
+    }
+    PackTracer tracer(scene_, scratch);
+    for (std::uint32_t first = 0; first < outside; first += RayPack::kMost) {
+      const int n = static_cast<int>(std::min<std::uint32_t>(RayPack::kMost, outside - first));
+      tracer.load(queries, batch.outside.data() + first, n);
+      tracer.answer_occluded(answers, occluded_by_unbounded(tracer));
+    }
+    const LeafId bounded = world_.first + world_.unbounded;
+    for (const fas::LeafGroups::Group& group : batch.groups.groups()) {
+      std::uint32_t place = group.first, left = group.count;
+      while (left > 0) {
+        fas::GroupProbe probe;
+        std::array<std::uint32_t, RayPack::kMost> places;
+        std::array<double, RayPack::kMost> depths;
+        for (; left > 0 && probe.count < RayPack::kMost; --left, place = batch.groups.next(place)) {
+          const auto k = static_cast<std::size_t>(probe.count);
+          places[k] = place;
+          depths[k] = batch.depth[place];
+          probe.u[k] = batch.u[place];
+          probe.v[k] = batch.v[place];
+          ++probe.count;
+        }
+        tracer.load(queries, places.data(), probe.count);
+        const RayPack::Mask stopped = occluded_by_unbounded(tracer);
+        const RayPack::Mask by_leaf = fas::occluded_in_group(
+            *group.tree, state, *group.leaf, group.any, probe, depths.data(),
+            [&](std::uint32_t candidate, std::uint64_t mask) {
+              return tracer.occlude(bounded + candidate, mask & ~stopped) | (mask & stopped);
+            });
+        tracer.count_bounds(tracer.pack().all());
+        tracer.answer_occluded(answers, stopped | by_leaf);
+      }
+    }
+  }
+
+  RayPack::Mask occluded_by_unbounded(PackTracer& tracer) const {
+    RayPack::Mask stopped = 0;
+    for (std::uint32_t k = 0; k < world_.unbounded; ++k) {
+      const RayPack::Mask open = tracer.pack().all() & ~stopped;
+      if (open != 0) stopped |= tracer.occlude(world_.first + k, open);
+    }
+    return stopped;
   }
 
   const CompiledScene& scene_;

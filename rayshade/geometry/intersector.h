@@ -52,6 +52,8 @@ class Intersector {
                        TraceScratch& scratch) const = 0;
   virtual void occluded(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
                         TraceScratch& scratch) const = 0;
+  /// How many queries of a span it likes best: enough to share work, few enough to stay in cache.
+  virtual std::size_t preferred_span() const { return 64; }
   /// The compiled scene has been prepared for another frame; scratches used before must not be used again.
   virtual void scene_changed() {}
 };

@@ -9,8 +9,8 @@
 namespace rayshade {
 namespace {
 
-/// Worlds of so few leaves are looped over by packs of rays: a vector test of every leaf costs less than finding
-/// out which to test.
+/// Worlds of so few leaves are looped over by packs of rays: a vector test of every leaf costs less than
+/// finding out which to test.
 constexpr std::uint32_t kPackLeaves = 24;
 
 bool worth_a_box(LeafKind kind) {
@@ -54,8 +54,9 @@ class GroupIntersector : public Intersector {
     in_packs_ = !brute_force_ && traces_in_packs(scene_);
     if (!in_packs_) return;
     for (LeafId id = world.first; id < world.first + world.count; ++id) {
-      boxes_.push_back(worth_a_box(scene_.leaves[id].kind) ? scene_.leaf_bounds(id, scene_.shutter, scene_.frame)
-                                                           : Bounds3::everything());
+      boxes_.push_back(worth_a_box(scene_.leaves[id].kind)
+                           ? scene_.leaf_bounds(id, scene_.shutter, scene_.frame)
+                           : Bounds3::everything());
     }
   }
 

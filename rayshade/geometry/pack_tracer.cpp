@@ -138,7 +138,8 @@ RayPack::Mask PackTracer::occlude(LeafId id, RayPack::Mask mask) {
     const auto i = static_cast<std::size_t>(std::countr_zero(left));
     const OcclusionQuery& query = occlusion_[places_[i]];
     const std::uint32_t tests = context_.tests, bounds_tests = context_.bounds_tests;
-    if (leaf_occludes(context_, id, query.ray, query.lo, query.hi, query.mask)) stopped |= RayPack::Mask{1} << i;
+    if (leaf_occludes(context_, id, query.ray, query.lo, query.hi, query.mask))
+      stopped |= RayPack::Mask{1} << i;
     tests_[i] += context_.tests - tests;
     bounds_tests_[i] += context_.bounds_tests - bounds_tests;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Queries as a pack of rays: loaded side by side, tested against leaf after leaf, answered. Leaves without a vector test
-// are tested ray by ray. Either way the answer is that of the scalar tests.
+// Queries as a pack of rays: loaded side by side, tested against leaf after leaf, answered. Leaves without a
+// vector test are tested ray by ray. Either way the answer is that of the scalar tests.
 #pragma once
 
 #include <array>
@@ -22,10 +22,10 @@ class PackTracer {
 
   PackTracer(const CompiledScene& scene, TraceScratch& scratch) : context_(scene, scratch) {}
 
-  /// Loads queries (at most RayPack::kMost) that all ask for leaves of the same opacity. `places`: their numbers in
-  /// `queries`, or null for the first `count`.
-  void load(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers, const std::uint32_t* places,
-            int count);
+  /// Loads queries (at most RayPack::kMost) that all ask for leaves of the same opacity. `places`: their
+  /// numbers in `queries`, or null for the first `count`.
+  void load(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
+            const std::uint32_t* places, int count);
   /// Tests a leaf of the world; returns the rays for which it is the best hit now.
   RayPack::Mask improve(LeafId leaf, RayPack::Mask mask);
   /// Writes the answers of the nearest queries loaded.

@@ -6,7 +6,8 @@
 #include "rayshade/geometry/rank.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "rayshade/geometry/ray_pack.cpp"  // NOLINT: Highway includes this file once per target
+#define HWY_TARGET_INCLUDE \
+  "rayshade/geometry/ray_pack.cpp"  // NOLINT: Highway includes this file once per target
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -121,8 +122,7 @@ RAYSHADE_LANES Found test(const Box& box, const Rays& r, std::uint64_t) {
   const M met = hn::And(hn::Le(entry, exit), hn::Ge(exit, r.lo));
   const M outside = hn::Gt(entry, r.lo);
   const V t = hn::IfThenElse(outside, entry, exit);
-  const M within =
-      hn::And(hn::Le(t, r.hi), hn::Lt(t, constant(std::numeric_limits<double>::infinity())));
+  const M within = hn::And(hn::Le(t, r.hi), hn::Lt(t, constant(std::numeric_limits<double>::infinity())));
   const V fx = hn::IfThenElse(outside, x.near, x.far), fy = hn::IfThenElse(outside, y.near, y.far);
   const M is_x = hn::Eq(t, fx), is_y = hn::Eq(t, fy);
   const V d = hn::IfThenElse(is_x, r.d.x, hn::IfThenElse(is_y, r.d.y, r.d.z));
@@ -181,11 +181,13 @@ RAYSHADE_LANES Found test(const Wall& wall, const Rays& r) {
   const V t = hn::IfThenElse(first_valid, first, second);
   return found(hn::And(hn::And(hit, hn::Or(first_valid, second_valid)), hn::Le(t, r.hi)), t);
 }
-RAYSHADE_LANES Found test(const Cylinder& cylinder, const Rays& r, std::uint64_t) { return test(cylinder.wall(), r); }
+RAYSHADE_LANES Found test(const Cylinder& cylinder, const Rays& r, std::uint64_t) {
+  return test(cylinder.wall(), r);
+}
 RAYSHADE_LANES Found test(const Cone& cone, const Rays& r, std::uint64_t) { return test(cone.wall(), r); }
 
-/// Weights of the vertices for rays whose direction is largest along z (of the axes as they are named here). `unsure`:
-/// lanes where an edge function is exactly zero.
+/// Weights of the vertices for rays whose direction is largest along z (of the axes as they are named here).
+/// `unsure`: lanes where an edge function is exactly zero.
 RAYSHADE_LANES M weights(const V3 (&p)[3], V ox, V oy, V oz, V dx, V dy, V dz, V (&w)[3], M& unsure) {
   V x[3], y[3];
   for (int i = 0; i < 3; ++i) {
@@ -197,7 +199,8 @@ RAYSHADE_LANES M weights(const V3 (&p)[3], V ox, V oy, V oz, V dx, V dy, V dz, V
   w[1] = x[2] * y[0] - y[2] * x[0];
   w[2] = x[0] * y[1] - y[0] * x[1];
   const V zero = constant(0);
-  const M inside = hn::Or(hn::Ge(least(least(w[0], w[1]), w[2]), zero), hn::Le(most(most(w[0], w[1]), w[2]), zero));
+  const M inside =
+      hn::Or(hn::Ge(least(least(w[0], w[1]), w[2]), zero), hn::Le(most(most(w[0], w[1]), w[2]), zero));
   unsure = hn::And(inside, hn::Or(hn::Or(hn::Eq(w[0], zero), hn::Eq(w[1], zero)), hn::Eq(w[2], zero)));
   return inside;
 }
@@ -208,7 +211,8 @@ inline void scalar_lane(const Vec3 (&vertices)[3], const Rays& r, std::size_t la
   const V lanes[8] = {r.o.x, r.o.y, r.o.z, r.d.x, r.d.y, r.d.z, r.lo, r.hi};
   for (int i = 0; i < 8; ++i) hn::Store(lanes[i], D(), values[i]);
   const Triangle triangle(shape::Triangle{{vertices[0], vertices[1], vertices[2]}});
-  const Ray ray{{values[0][lane], values[1][lane], values[2][lane]}, {values[3][lane], values[4][lane], values[5][lane]}};
+  const Ray ray{{values[0][lane], values[1][lane], values[2][lane]},
+                {values[3][lane], values[4][lane], values[5][lane]}};
   ShapeHit hit;
   const bool met = triangle.intersect(ray, values[6][lane], values[7][lane], hit);
   alignas(64) double chosen[8] = {};
@@ -229,7 +233,7 @@ RAYSHADE_LANES Found test_triangle(const Vec3 (&vertices)[3], const Rays& r, std
   const M none = hn::Lt(constant(0), constant(0));
   M inside = none, unsure = none;
   V w[3] = {constant(0), constant(0), constant(0)};
-  const auto take = [&](M lanes, const V (&v)[3], M in, M doubt) HWY_ATTR {
+  const auto take = [&](M lanes, const V(&v)[3], M in, M doubt) HWY_ATTR {
     inside = hn::Or(inside, hn::And(lanes, in));
     unsure = hn::Or(unsure, hn::And(lanes, doubt));
     for (int i = 0; i < 3; ++i) w[i] = hn::IfThenElse(lanes, v[i], w[i]);
@@ -269,11 +273,15 @@ RAYSHADE_LANES Found test_triangle(const Vec3 (&vertices)[3], const Rays& r, std
   }
   return out;
 }
-RAYSHADE_LANES Found test(const Triangle& s, const Rays& r, std::uint64_t w) { return test_triangle(s.vertices(), r, w); }
+RAYSHADE_LANES Found test(const Triangle& s, const Rays& r, std::uint64_t w) {
+  return test_triangle(s.vertices(), r, w);
+}
 RAYSHADE_LANES Found test(const SmoothTriangle& s, const Rays& r, std::uint64_t w) {
   return test_triangle(s.vertices(), r, w);
 }
-RAYSHADE_LANES Found test(const UvTriangle& s, const Rays& r, std::uint64_t w) { return test_triangle(s.vertices(), r, w); }
+RAYSHADE_LANES Found test(const UvTriangle& s, const Rays& r, std::uint64_t w) {
+  return test_triangle(s.vertices(), r, w);
+}
 
 RAYSHADE_LANES V component(const V3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
@@ -297,14 +305,17 @@ RAYSHADE_LANES Found test(const Polygon& polygon, const Rays& r, std::uint64_t w
 }
 
 RAYSHADE_LANES V3 mapped(const Affine& map, const V3& v) {
-  return plus(plus(times(v.x, constant(map.rows[0])), times(v.y, constant(map.rows[1]))), times(v.z, constant(map.rows[2])));
+  return plus(plus(times(v.x, constant(map.rows[0])), times(v.y, constant(map.rows[1]))),
+              times(v.z, constant(map.rows[2])));
 }
 
 template <class Shape>
-HWY_ATTR Found test_at(const Shape& shape, const Affine* inverse, const RayPack& pack, std::size_t i, std::uint64_t wanted) {
+HWY_ATTR Found test_at(const Shape& shape, const Affine* inverse, const RayPack& pack, std::size_t i,
+                       std::uint64_t wanted) {
   const D d;
   Rays r{{hn::Load(d, pack.origin[0] + i), hn::Load(d, pack.origin[1] + i), hn::Load(d, pack.origin[2] + i)},
-         {hn::Load(d, pack.direction[0] + i), hn::Load(d, pack.direction[1] + i), hn::Load(d, pack.direction[2] + i)},
+         {hn::Load(d, pack.direction[0] + i), hn::Load(d, pack.direction[1] + i),
+          hn::Load(d, pack.direction[2] + i)},
          hn::Load(d, pack.lo + i),
          hn::Load(d, pack.t + i)};
   if (inverse) {
@@ -315,8 +326,8 @@ HWY_ATTR Found test_at(const Shape& shape, const Affine* inverse, const RayPack&
 }
 
 template <class Shape>
-HWY_ATTR std::uint64_t improve_shape(const Shape& shape, const Affine* inverse, std::int64_t rank, RayPack& pack,
-                                     std::uint64_t mask) {
+HWY_ATTR std::uint64_t improve_shape(const Shape& shape, const Affine* inverse, std::int64_t rank,
+                                     RayPack& pack, std::uint64_t mask) {
   const D d;
   const DI di;
   const std::size_t n = hn::Lanes(d);
@@ -347,8 +358,8 @@ HWY_ATTR std::uint64_t improve_shape(const Shape& shape, const Affine* inverse, 
 }
 
 template <class Shape>
-HWY_ATTR std::uint64_t occlude_shape(const Shape& shape, const Affine* inverse, bool closed, const RayPack& pack,
-                                     std::uint64_t mask) {
+HWY_ATTR std::uint64_t occlude_shape(const Shape& shape, const Affine* inverse, bool closed,
+                                     const RayPack& pack, std::uint64_t mask) {
   const D d;
   const std::size_t n = hn::Lanes(d);
   const std::uint64_t lanes = (std::uint64_t{1} << n) - 1;
@@ -401,16 +412,18 @@ inline const Affine* inverse_of(const CompiledScene& scene, const Leaf& leaf) {
 HWY_ATTR std::uint64_t improve(const CompiledScene& scene, const Leaf& leaf, std::int64_t rank, RayPack& pack,
                                std::uint64_t mask) {
   const Affine* inverse = inverse_of(scene, leaf);
-  return with_shape(scene, leaf,
-                    [&](const auto& shape) HWY_ATTR { return improve_shape(shape, inverse, rank, pack, mask); });
+  return with_shape(scene, leaf, [&](const auto& shape) HWY_ATTR {
+    return improve_shape(shape, inverse, rank, pack, mask);
+  });
 }
 
 HWY_ATTR std::uint64_t occlude(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack,
                                std::uint64_t mask) {
   const Affine* inverse = inverse_of(scene, leaf);
   const bool closed = closed_at_far_limit(leaf.kind);
-  return with_shape(scene, leaf,
-                    [&](const auto& shape) HWY_ATTR { return occlude_shape(shape, inverse, closed, pack, mask); });
+  return with_shape(scene, leaf, [&](const auto& shape) HWY_ATTR {
+    return occlude_shape(shape, inverse, closed, pack, mask);
+  });
 }
 
 HWY_ATTR std::uint64_t clip(const Bounds3& box, double condition, const RayPack& pack, std::uint64_t mask) {
@@ -423,7 +436,8 @@ HWY_ATTR std::uint64_t clip(const Bounds3& box, double condition, const RayPack&
   for (std::size_t i = 0; i < static_cast<std::size_t>(pack.count); i += n) {
     const std::uint64_t wanted = mask >> i & lanes;
     if (wanted == 0) continue;
-    const V ox = hn::Load(d, pack.origin[0] + i), oy = hn::Load(d, pack.origin[1] + i), oz = hn::Load(d, pack.origin[2] + i);
+    const V ox = hn::Load(d, pack.origin[0] + i), oy = hn::Load(d, pack.origin[1] + i),
+            oz = hn::Load(d, pack.origin[2] + i);
     const V size = most(most(hn::Abs(ox), hn::Abs(oy)), hn::Abs(oz));
     const V slack = constant(kUnit * condition) * (size + constant(extent));
     V entry = hn::Load(d, pack.lo + i), exit = hn::Load(d, pack.t + i);
@@ -465,7 +479,8 @@ RayPack::Mask improve_pack(const CompiledScene& scene, const Leaf& leaf, std::in
   return HWY_DYNAMIC_DISPATCH(improve)(scene, leaf, rank, pack, mask);
 }
 
-RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack, RayPack::Mask mask) {
+RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack,
+                           RayPack::Mask mask) {
   return HWY_DYNAMIC_DISPATCH(occlude)(scene, leaf, pack, mask);
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Up to 64 rays side by side, and the exact tests of common shapes for many of them at once.
 //
-// A vector test is, lane by lane, the scalar test of the shape: the same operations on the same doubles in the same
-// order, only + - * / and square root, comparisons and selections, never contracted; so it gives the same bits (rule
-// 3), and tests compare the two. Which instruction set runs is chosen by the processor at hand.
+// A vector test is, lane by lane, the scalar test of the shape: the same operations on the same doubles in
+// the same order, only + - * / and square root, comparisons and selections, never contracted; so it gives the
+// same bits (rule 3), and tests compare the two. Which instruction set runs is chosen by the processor at
+// hand.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,7 @@ struct RayPack {
   alignas(64) double t[kMost];           ///< far limit, or the best hit so far
   alignas(64) std::int64_t rank[kMost];  ///< of the best hit; a rank fits 63 bits
   alignas(64) double a[kMost], b[kMost];
-  alignas(64) double part[kMost];        ///< ShapeHit::part
+  alignas(64) double part[kMost];  ///< ShapeHit::part
   std::uint32_t leaf[kMost];
 
   Mask all() const { return count == kMost ? ~Mask{0} : (Mask{1} << count) - 1; }
@@ -48,13 +49,14 @@ constexpr bool has_vector_test(LeafKind kind) {
   }
 }
 
-/// Tests a leaf that has_vector_test and is not animated against the rays of `mask`, whose directions are of unit length
-/// as far as the renderer knows (Ray::unit). Those for which it is the better hit by (t, rank) get its t, rank, a, b and
-/// part; returns which. `leaf[]` is left to the caller.
+/// Tests a leaf that has_vector_test and is not animated against the rays of `mask`, whose directions are of
+/// unit length as far as the renderer knows (Ray::unit). Those for which it is the better hit by (t, rank)
+/// get its t, rank, a, b and part; returns which. `leaf[]` is left to the caller.
 RayPack::Mask improve_pack(const CompiledScene& scene, const Leaf& leaf, std::int64_t rank, RayPack& pack,
                            RayPack::Mask mask);
 /// Which rays of `mask` the leaf stops between lo and t (before the far limit in the sense of its kind).
-RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack, RayPack::Mask mask);
+RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack,
+                           RayPack::Mask mask);
 /// Which rays of `mask` may meet the box within (lo, t), whatever the exact tests round (clip_to_box).
 RayPack::Mask clip_pack(const Bounds3& box, double condition, const RayPack& pack, RayPack::Mask mask);
 

@@ -50,6 +50,7 @@ struct TraceScratch {
   TraceCounts counts;
   bool brute_force = false;   ///< loop over all leaves, ignore hierarchies
   std::unique_ptr<fas::ThreadState> trees;  ///< what this thread remembers of the trees of an intersector
+  std::shared_ptr<void> batch;              ///< room of an intersector to sort spans in
 };
 
 /// The nearest hit of one leaf with t beyond `lo` (open or closed as objects.md 2 says) and t <= hi. A function of

@@ -175,7 +175,8 @@ void Renderer::make_intersector() {
 
 void Renderer::prepare_frame(int frame) {
   frame_.shading.frame = frame;
-  if (located([&] { return compiled_->prepare_frame(shutter_of(settings_, frame), frame, !brute_force()); })) {
+  if (located(
+          [&] { return compiled_->prepare_frame(shutter_of(settings_, frame), frame, !brute_force()); })) {
     intersector_->scene_changed();
   }
 }

@@ -27,7 +27,8 @@ struct RenderOptions {
   IntersectorKind intersector = IntersectorKind::kFas;
   std::size_t fas_memory = 0;  ///< bytes for the hyper-trees; 0: a quarter of what the process may use
   fas::Split fas_split = fas::Split::kAdaptive;
-  /// Puts an intersector of one's own around (or in place of) the one made: to record or to check its answers.
+  /// Puts an intersector of one's own around (or in place of) the one made: to record or to check its
+  /// answers.
   std::function<std::unique_ptr<Intersector>(const CompiledScene&, std::unique_ptr<Intersector>)> wrap;
   bool layers = false;
   bool cost = false;

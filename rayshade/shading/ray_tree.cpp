@@ -124,7 +124,8 @@ struct RayTree::Walk {
 
 RayTree::RayTree(const ShadingScene& scene) : scene_(scene) {
   // Small enough that a batch and its answers stay in the second-level cache.
-  batch_ = std::clamp<std::size_t>(kQueriesPerRun / std::max<std::size_t>(1, scene.lights.size()), 1, 64);
+  batch_ = std::clamp<std::size_t>(kQueriesPerRun / std::max<std::size_t>(1, scene.lights.size()), 1,
+                                   scene.intersector->preferred_span());
 }
 
 RayTree::~RayTree() = default;

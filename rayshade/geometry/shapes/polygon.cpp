@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "rayshade/geometry/shapes/polygon.h"
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
 #include "rayshade/geometry/shapes/flat.h"
 
 namespace rayshade {
@@ -37,35 +41,82 @@ Polygon::Polygon(const shape::Polygon& polygon, bool flip) : point_(polygon.poin
     projected[dropped] -= dot(normal_, vertex - point_) / normal_[dropped];
     bounds_.add(projected);
   }
+  make_buckets();
   bounds_ =
       grown(bounds_, (16 * kRoundoff + 4 * normal_error_) * (corners.largest_extent() + max_abs(point_)));
 }
 
-bool Polygon::winds_around(Point2 c) const {
-  const auto quadrant = [c](Point2 p) {  // counter-clockwise from right and above
-    const int left = !(p.u >= c.u), below = !(p.v >= c.v);
-    return below ? 3 - left : left;
-  };
-  int winding = 0;
-  Point2 p = vertices_.back();
-  int from = quadrant(p);
-  for (const Point2 q : vertices_) {
-    const int to = quadrant(q);
-    switch ((to - from) & 3) {
-      case 1:
-        ++winding;
-        break;
-      case 3:
-        --winding;
-        break;
-      case 2:
-        winding += (q.u - p.u) * (c.v - p.v) - (q.v - p.v) * (c.u - p.u) > 0 ? 2 : -2;
-        break;
-      default:
-        break;
+/// Edges by the range of v that they span: flat, so that a polygon of thousands of vertices is two allocations.
+struct Polygon::Buckets {
+  double low, scale;
+  std::vector<std::uint32_t> first;  ///< of each bucket in `edges`; one more at the end
+  std::vector<std::uint32_t> edges;  ///< number of the edge's end vertex
+
+  /// Monotonic in v, so that an edge stands in every bucket between those of its ends.
+  std::size_t of(double v) const {
+    const double place = (v - low) * scale;
+    const auto last = static_cast<double>(first.size() - 2);
+    return static_cast<std::size_t>(place > 0 ? std::min(place, last) : 0);
+  }
+};
+
+void Polygon::make_buckets() {
+  constexpr std::size_t kFewVertices = 12;
+  const std::size_t count = vertices_.size();
+  const double height = hi_.v - lo_.v;
+  if (count <= kFewVertices || !(height > 0)) return;
+  auto buckets = std::make_shared<Buckets>();
+  buckets->low = lo_.v;
+  buckets->scale = static_cast<double>(count) / height;
+  if (!std::isfinite(buckets->scale)) return;
+  buckets->first.assign(count + 1, 0);
+  const auto each = [&](const auto& visit) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const double a = vertices_[i == 0 ? count - 1 : i - 1].v, b = vertices_[i].v;
+      if (a == b) continue;  // never crossed
+      for (std::size_t k = buckets->of(std::min(a, b)); k <= buckets->of(std::max(a, b)); ++k) visit(k, i);
     }
-    p = q;
-    from = to;
+  };
+  std::size_t total = 0;
+  each([&](std::size_t k, std::size_t) { ++buckets->first[k + 1], ++total; });
+  // A zigzag of tall edges would fill every bucket with all of them; then a loop does as well.
+  if (total > 8 * count) return;
+  for (std::size_t k = 0; k < count; ++k) buckets->first[k + 1] += buckets->first[k];
+  buckets->edges.resize(total);
+  std::vector<std::uint32_t> next(buckets->first.begin(), buckets->first.end() - 1);
+  each([&](std::size_t k, std::size_t i) { buckets->edges[next[k]++] = static_cast<std::uint32_t>(i); });
+  buckets_ = std::move(buckets);
+}
+
+/// The sum of quadrants that objects.md 4.5 speaks of is four times the number of signed crossings of the half-line from
+/// c to the right. A step crosses it only if its ends lie on different sides of v = c.v, and then: with both ends
+/// to the right it does, with both to the left it does not, otherwise the sign of the cross product says so, as it says for
+/// opposite quadrants which way round the step goes (upward a positive sign is a crossing, downward the other). So
+/// only edges that span c.v need to be looked at.
+bool Polygon::winds_around(Point2 c) const {
+  int winding = 0;
+  const auto step = [&](Point2 p, Point2 q) {
+    const bool up = q.v >= c.v;
+    if ((p.v >= c.v) == up) return;
+    const bool right = p.u >= c.u;
+    bool crosses = right;
+    if (right != (q.u >= c.u)) {
+      crosses = ((q.u - p.u) * (c.v - p.v) - (q.v - p.v) * (c.u - p.u) > 0) == up;
+    }
+    if (crosses) winding += up ? 1 : -1;
+  };
+  if (buckets_) {
+    const std::size_t k = buckets_->of(c.v);
+    for (std::uint32_t at = buckets_->first[k]; at < buckets_->first[k + 1]; ++at) {
+      const std::uint32_t i = buckets_->edges[at];
+      step(vertices_[i == 0 ? vertices_.size() - 1 : i - 1], vertices_[i]);
+    }
+  } else {
+    Point2 p = vertices_.back();
+    for (const Point2 q : vertices_) {
+      step(p, q);
+      p = q;
+    }
   }
   return winding != 0;
 }

@@ -3,6 +3,8 @@
 // its plane are taken as projected onto it along the axis that the winding test drops.
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "rayshade/geometry/ray.h"
@@ -42,7 +44,9 @@ class Polygon {
   struct Point2 {
     double u, v;
   };
-  /// Non-zero winding number about c, by quadrants that are closed to the right and above.
+  struct Buckets;
+  void make_buckets();
+  /// Non-zero winding number about c; "right" and "above" are closed.
   bool winds_around(Point2 c) const;
 
   Vec3 point_;   ///< the first vertex, in the plane
@@ -51,6 +55,7 @@ class Polygon {
   Point2 lo_, hi_;       ///< box of the projected vertices
   double normal_error_;  ///< bound on the error of `normal_`, in radians
   std::vector<Point2> vertices_;
+  std::shared_ptr<const Buckets> buckets_;  ///< of polygons with more than a few vertices
   Bounds3 bounds_;
 };
 
