@@ -42,7 +42,7 @@ class LeafGroups {
           static_cast<std::size_t>((reinterpret_cast<std::uintptr_t>(leaf) >> 4) * 0x9e3779b97f4a7c15u >> 52);
       for (;; hash = (hash + 1) % table_.size()) {
         if (table_[hash] == 0) {
-          if (groups_.size() == kMostGroups) return add_overflow(tree, leaf, query, place);
+          if (groups_.size() >= kMostGroups) return add_overflow(tree, leaf, query, place);
           groups_.push_back({&tree, leaf, query, place, place, 0});
           table_[hash] = static_cast<std::uint16_t>(groups_.size());
           break;

@@ -176,11 +176,15 @@ std::uint64_t scalar_match_rays(const std::uint8_t* block, std::size_t s, std::s
 
 }  // namespace
 
+Kernels dispatched_kernels() {
+  return {&HWY_DYNAMIC_DISPATCH(match), &HWY_DYNAMIC_DISPATCH(match_many), &HWY_DYNAMIC_DISPATCH(match_rays),
+          HWY_DYNAMIC_DISPATCH(name)()};
+}
+
 const Kernels& kernels() {
   static const Kernels chosen = [] {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    return Kernels{&HWY_DYNAMIC_DISPATCH(match), &HWY_DYNAMIC_DISPATCH(match_many),
-                   &HWY_DYNAMIC_DISPATCH(match_rays), HWY_DYNAMIC_DISPATCH(name)()};
+    return dispatched_kernels();
   }();
   return chosen;
 }

@@ -16,10 +16,15 @@ Pool::~Pool() {
 std::byte* Pool::take(std::size_t bytes) {
   const std::size_t size = (bytes + kChunk - 1) / kChunk * kChunk;
   const std::lock_guard lock(mutex_);
+  std::size_t best = free_.size();
   for (std::size_t i = free_.size(); i-- > 0;) {
     if (free_[i].size < size) continue;
-    const Chunk chunk = free_[i];
-    free_.erase(free_.begin() + static_cast<std::ptrdiff_t>(i));
+    if (best == free_.size() || free_[i].size < free_[best].size) best = i;
+    if (free_[best].size == size) break;
+  }
+  if (best < free_.size()) {
+    const Chunk chunk = free_[best];
+    free_.erase(free_.begin() + static_cast<std::ptrdiff_t>(best));
     used_.fetch_add(chunk.size, std::memory_order_relaxed);
     return chunk.start;
   }
@@ -27,14 +32,31 @@ std::byte* Pool::take(std::size_t bytes) {
     exhausted_.store(true, std::memory_order_relaxed);
     return nullptr;
   }
+  make_room(size);
   auto* start = static_cast<std::byte*>(::operator new(size, kAlignment, std::nothrow));
   if (!start) {
     exhausted_.store(true, std::memory_order_relaxed);
     return nullptr;
   }
   all_.push_back({start, size});
+  held_ += size;
   used_.fetch_add(size, std::memory_order_relaxed);
   return start;
+}
+
+void Pool::make_room(std::size_t size) {
+  while (held_ + size > budget_) {
+    const Chunk chunk = free_.back();
+    free_.pop_back();
+    std::erase_if(all_, [&](const Chunk& c) { return c.start == chunk.start; });
+    held_ -= chunk.size;
+    ::operator delete(chunk.start, kAlignment);
+  }
+}
+
+std::size_t Pool::held() const {
+  const std::lock_guard lock(mutex_);
+  return held_;
 }
 
 void Pool::reset() {
