@@ -163,6 +163,9 @@ void Plane::add_polygon_cuts(const Geometry& geometry, Footprint& out) const {
   }
   if (count > 3)
     std::sort(order, order + count, [&](std::size_t a, std::size_t b) { return size[a] > size[b]; });
+  const auto value_at = [&](const Point& normal, const Point& x) {
+    return normal[0] * x[0] + normal[1] * x[1] + (perspective ? normal[2] * x[2] : 0);
+  };
   const Footprint whole = out;
   bool covers = geometry.opaque && count == 3 && perspective;
   for (std::size_t k = 0; k < std::min<std::size_t>(3, count); ++k) {
@@ -173,7 +176,7 @@ void Plane::add_polygon_cuts(const Geometry& geometry, Footprint& out) const {
     n = scaled(n, 1 / size_n);
     double least = kInfinity, most = -kInfinity, reach = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const double value = n[0] * p[i][0] + n[1] * p[i][1] + (perspective ? n[2] * p[i][2] : 0);
+      const double value = value_at(n, p[i]);
       least = std::min(least, value);
       most = std::max(most, value);
       reach = std::max(reach, std::fabs(n[0] * p[i][0]) + std::fabs(n[1] * p[i][1]) +
@@ -189,8 +192,13 @@ void Plane::add_polygon_cuts(const Geometry& geometry, Footprint& out) const {
     const int before = out.cuts;
     add_cut(n, least - blur, whole, perspective, out);
     covers = covers && out.cuts > before;
-    // Inside by more than twice the blur on all sides, and not seen edge-on, the exact test surely hits.
-    if (covers) out.inside[before] = 2 * (out.cut[before][2] - n[2]) + 4 * blur / whole.z0;
+    if (!covers) continue;
+    // Inside by more than twice the blur on all sides, and not seen edge-on, the exact test surely hits. The
+    // edge itself is off the plane by what its normal is rounded by, which is much for edges far from the
+    // apex and short beside that: by `off`. Beside that the triangle must be wide, or it has no inside.
+    const double off = std::max(std::fabs(value_at(n, a)), std::fabs(value_at(n, b))) + kRound * reach;
+    out.inside[before] = 2 * (out.cut[before][2] - n[2]) + (off + 4 * blur) / whole.z0;
+    covers = most / whole.z1 > 4 * out.inside[before] + 8 * off / whole.z0;
   }
   if (covers) {
     const Point normal = cross(difference(p[1], p[0]), difference(p[2], p[0]));

@@ -193,7 +193,7 @@ View make_view(View::Kind kind, const Point& point, const Bounds& bounds, double
   constexpr double kUnit = std::numeric_limits<double>::epsilon();
   View view;
   view.kind = kind;
-  double size = std::numeric_limits<double>::min();
+  double size = 0x1p-400;
   for (int i = 0; i < 3; ++i) {
     const auto axis = static_cast<std::size_t>(i);
     size = std::max({size, std::fabs(bounds.lo[axis]), std::fabs(bounds.hi[axis])});
