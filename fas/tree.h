@@ -251,10 +251,11 @@ inline HyperTree::Place HyperTree::find(const Query& query, ThreadState& state, 
   if (ready != 2) {
     if (ready == 3 || !make_root(query.face, state, cache.counts)) return Place::kElsewhere;
   }
-  // Beyond the root square there is nothing at all. (Comparisons are false for NaN, which goes elsewhere.)
+  // Beyond the root square there is nothing at all. (Comparisons are false for NaN, which goes elsewhere, as
+  // does infinity: the quotients of denormal numbers overflow.)
   const double x = (query.u - root.u0) * root.scale, y = (query.v - root.v0) * root.scale;
   if (!(x >= 0 && y >= 0 && x < 0x1p24 && y < 0x1p24))
-    return x == x && y == y ? Place::kNothing : Place::kElsewhere;
+    return (x - x) + (y - y) == 0 ? Place::kNothing : Place::kElsewhere;
   const auto u = static_cast<std::uint32_t>(x), v = static_cast<std::uint32_t>(y);
   if (cache.face == query.face && (((u ^ cache.u) | (v ^ cache.v)) >> cache.shift) == 0) {
     leaf = cache.leaf;
