@@ -10,11 +10,11 @@ SUDO    := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 PACKAGES       := g++ cmake ninja-build flex bison pkg-config libpng-dev zlib1g-dev libfmt-dev libsleef-dev \
                   librandom123-dev libopenexr-dev libhwy-dev
 TEST_PACKAGES  := libgtest-dev libgmock-dev nlohmann-json3-dev libboost-dev man-db groff-base
-BENCH_PACKAGES := libbenchmark-dev time
+BENCH_PACKAGES := libbenchmark-dev time libembree-dev
 LINT_PACKAGES  := clang clang-tidy clang-format libclang-rt-14-dev
 
 .DEFAULT_GOAL := help
-.PHONY: help run build check check-long asan tsan bench install package lint format fuzz clean \
+.PHONY: help run build check check-long asan tsan bench bench-fas install package lint format fuzz clean \
         packages test-packages bench-packages lint-packages
 
 help: ## list the targets
@@ -68,6 +68,11 @@ bench: bench-packages ## run the benchmarks (speed as ratios within one run)
 	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_BENCH=ON
 	cmake --build $(BUILD) -j $(JOBS)
 	bench/run $(BUILD)
+
+bench-fas: bench-packages ## replay the rays of the procedural databases: trees, hierarchy, Embree
+	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_BENCH=ON
+	cmake --build $(BUILD) -j $(JOBS) --target fas_bench spd
+	bench/run-fas $(BUILD)
 
 install: build ## install programs, scenes, manuals and completion under PREFIX
 	$(SUDO) cmake --install $(BUILD) --prefix $(PREFIX)
