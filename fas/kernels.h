@@ -26,6 +26,12 @@ struct Block {
   static constexpr std::size_t bytes(std::size_t n, bool cuts) {
     return stride(n) * (kAreaBytes + kIdBytes + (cuts ? kCutBytes : 0));
   }
+  /// From the start of a block to where kernels may read: whole vectors of depths, or of the last offsets,
+  /// are beyond the end of a block of eight.
+  static constexpr std::size_t readable(std::size_t n, bool cuts) {
+    const std::size_t last = stride(n) * (cuts ? kAreaBytes + 10 : kAreaBytes - 1) + kPadding;
+    return last > bytes(n, cuts) ? last : bytes(n, cuts);
+  }
 };
 
 /// Where a ray meets the plane of a leaf, in 256ths of its cell, and the depth it may reach.

@@ -483,8 +483,9 @@ std::uintptr_t HyperTree::make_leaf(Node& node, const Root& root, int face, cons
   std::size_t bytes = sizeof(Leaf);
   for (std::uint32_t left = n; left > 0;) {
     const std::uint32_t size = std::min<std::uint32_t>(left, Block::kMost);
-    bytes += Block::bytes(size, cuts);
     left -= size;
+    // Not even what does not matter may be read while another thread writes it.
+    bytes += left > 0 ? Block::bytes(size, cuts) : Block::readable(size, cuts);
   }
   std::byte* memory = state.arena.take(bytes);
   if (!memory) return kNone;

@@ -15,7 +15,7 @@
 namespace fas {
 namespace {
 
-/// A block of random candidates, many of them alike or extreme, with the padding that kernels may read.
+/// A block of random candidates, many of them alike or extreme, with what kernels may read beyond it.
 class RandomBlock {
  public:
   explicit RandomBlock(std::mt19937_64& engine) : engine_(engine) {}
@@ -23,8 +23,9 @@ class RandomBlock {
   void make(int n, bool cuts) {
     count = n;
     stride = Block::stride(static_cast<std::size_t>(n));
-    const std::size_t size = Block::bytes(static_cast<std::size_t>(n), cuts);
-    bytes_.assign(size + Block::kPadding, 0);
+    // No byte more than kernels may read: the address sanitizer watches.
+    bytes_.assign(Block::readable(static_cast<std::size_t>(n), cuts), 0);
+    bytes_.shrink_to_fit();
     for (std::uint8_t& byte : bytes_) byte = any();
     // Wide areas, so that matches are common; lo <= hi is not required.
     for (std::size_t i = 0; i < stride && engine_() % 4 != 0; ++i) {

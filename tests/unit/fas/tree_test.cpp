@@ -177,8 +177,9 @@ void shoot(std::uint64_t seed, int shots, Totals& totals) {
           places[probe.count] = next;
           probe.u[probe.count] = probed[next].u;
           probe.v[probe.count] = probed[next].v;
-          const double axis = s.direction[tree.from_apex(s.direction).face >> 1];
-          depths[probe.count++] = from_apex ? s.t * std::fabs(axis) : tree.toward(s.origin).depth;
+          const int axis = from_apex ? tree.from_apex(s.direction).face >> 1 : 0;
+          depths[probe.count++] =
+              from_apex ? s.t * std::fabs(s.direction[axis]) : tree.toward(s.origin).depth;
         }
         const auto see = [&](std::uint32_t id, std::uint64_t mask) {
           for (; mask != 0; mask &= mask - 1) {
