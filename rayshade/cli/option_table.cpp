@@ -285,46 +285,49 @@ std::vector<OptionSpec> make_table() {
                kRun,
                "Number of threads; 0 (the default) is what the process may use.",
                [](Options& o, Values v) { o.threads = parse_int(v[0], "--threads", 0, 4096); }});
-  t.push_back({0,
-               "intersector",
-               {"NAME"},
-               kRun,
-               "How rays find objects: fas (adaptive subdivision by classes of rays, the default), hierarchy "
-               "(a bounding hierarchy alone) or brute (every object for every ray; the oracle). The picture is the "
-               "same.",
-               [](Options& o, Values v) {
-                 if (v[0] == "brute")
-                   o.intersector = IntersectorKind::kBruteForce;
-                 else if (v[0] == "hierarchy")
-                   o.intersector = IntersectorKind::kHierarchy;
-                 else if (v[0] == "fas")
-                   o.intersector = IntersectorKind::kFas;
-                 else
-                   throw UsageError("--intersector: '" + v[0] + "' is neither fas nor hierarchy nor brute");
-               },
-               {"fas", "hierarchy", "brute"}});
-  t.push_back({0,
-               "fas-memory",
-               {"SIZE"},
-               kRun,
-               "Memory that the trees of adaptive subdivision may take, for example 500M or 2G (default: a quarter "
-               "of what the process may use). At the bound they stop growing; the picture is the same.",
-               [](Options& o, Values v) { o.fas_memory = parse_bytes(v[0], "--fas-memory"); }});
-  t.push_back({0,
-               "fas-split",
-               {"WHEN"},
-               kRun,
-               "When cells of the trees are split: adaptive (when it pays, the default) or always (as deep as cells "
-               "go, for study). The picture is the same.",
-               [](Options& o, Values v) {
-                 if (v[0] == "adaptive")
-                   o.fas_split = fas::Split::kAdaptive;
-                 else if (v[0] == "always")
-                   o.fas_split = fas::Split::kAlways;
-                 else
-                   throw UsageError("--fas-split: '" + v[0] + "' is neither adaptive nor always");
-               },
-               {"adaptive", "always"}});
+  t.push_back(
+      {0,
+       "intersector",
+       {"NAME"},
+       kRun,
+       "How rays find objects: fas (adaptive subdivision by classes of rays, the default), hierarchy "
+       "(a bounding hierarchy alone) or brute (every object for every ray; the oracle). The picture is the "
+       "same.",
+       [](Options& o, Values v) {
+         if (v[0] == "brute")
+           o.intersector = IntersectorKind::kBruteForce;
+         else if (v[0] == "hierarchy")
+           o.intersector = IntersectorKind::kHierarchy;
+         else if (v[0] == "fas")
+           o.intersector = IntersectorKind::kFas;
+         else
+           throw UsageError("--intersector: '" + v[0] + "' is neither fas nor hierarchy nor brute");
+       },
+       {"fas", "hierarchy", "brute"}});
+  t.push_back(
+      {0,
+       "fas-memory",
+       {"SIZE"},
+       kRun,
+       "Memory that the trees of adaptive subdivision may take, for example 500M or 2G (default: a quarter "
+       "of what the process may use). At the bound they stop growing; the picture is the same.",
+       [](Options& o, Values v) { o.fas_memory = parse_bytes(v[0], "--fas-memory"); }});
+  t.push_back(
+      {0,
+       "fas-split",
+       {"WHEN"},
+       kRun,
+       "When cells of the trees are split: adaptive (when it pays, the default) or always (as deep as cells "
+       "go, for study). The picture is the same.",
+       [](Options& o, Values v) {
+         if (v[0] == "adaptive")
+           o.fas_split = fas::Split::kAdaptive;
+         else if (v[0] == "always")
+           o.fas_split = fas::Split::kAlways;
+         else
+           throw UsageError("--fas-split: '" + v[0] + "' is neither adaptive nor always");
+       },
+       {"adaptive", "always"}});
   t.push_back({0,
                "block",
                {"N"},

@@ -98,7 +98,7 @@ std::uint32_t PathTable::add(const PathNode& node) {
   if (textured) out_.has_textures = true;
   out_.path_nodes.push_back(node);
   out_.path_textured.push_back(textured);
-  out_.path_surfaces.push_back(node.surface != kNone   ? node.surface
+  out_.path_surfaces.push_back(node.surface != kNone  ? node.surface
                                : node.parent != kNone ? out_.path_surfaces[node.parent]
                                                       : kNone);
   return static_cast<std::uint32_t>(out_.path_nodes.size() - 1);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The compile step between scene and rays (rule 1): the scene is flattened into groups of leaves over typed pools.
+// The compile step between scene and rays (rule 1): the scene is flattened into groups of leaves over typed
+// pools.
 //
-// A *leaf* is what an intersector tests: a primitive, a CSG object, or an instance of a shared group. A *group* is a
-// set of leaves in one space: the world, the body of an object that is instanced more than once, or an operand of
-// CSG. Lists, grids and objects used once vanish: their transforms are composed into the *placement* of each leaf,
-// their surfaces and textures are found through the leaf's *path*, a chain of nodes from the primitive outward.
-// Named objects that are never instanced are never compiled.
+// A *leaf* is what an intersector tests: a primitive, a CSG object, or an instance of a shared group. A
+// *group* is a set of leaves in one space: the world, the body of an object that is instanced more than once,
+// or an operand of CSG. Lists, grids and objects used once vanish: their transforms are composed into the
+// *placement* of each leaf, their surfaces and textures are found through the leaf's *path*, a chain of nodes
+// from the primitive outward. Named objects that are never instanced are never compiled.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,21 @@
 namespace rayshade {
 
 enum class LeafKind : std::uint8_t {
-  kPlane, kSphere, kBox, kDisc, kCylinder, kCone, kTorus, kTriangle, kSmoothTriangle, kUvTriangle, kPolygon, kBlob,
-  kHeightField, kCsg, kInstance,
+  kPlane,
+  kSphere,
+  kBox,
+  kDisc,
+  kCylinder,
+  kCone,
+  kTorus,
+  kTriangle,
+  kSmoothTriangle,
+  kUvTriangle,
+  kPolygon,
+  kBlob,
+  kHeightField,
+  kCsg,
+  kInstance,
 };
 inline constexpr int kLeafKinds = static_cast<int>(LeafKind::kInstance) + 1;
 
@@ -35,38 +49,39 @@ enum Opacity : std::uint8_t { kOpaque = 1, kTransparent = 2, kAnyOpacity = 3 };
 /// 24 bytes.
 struct Leaf {
   LeafKind kind = LeafKind::kPlane;
-  std::uint8_t opacity = kOpaque;     ///< Opacity bits
-  bool animated = false;              ///< its placement varies with time
-  std::uint32_t shape = 0;            ///< index in the pool of its kind (CSG: csgs, instance: instances)
-  std::uint32_t placement = kNone;    ///< index in placements; kNone: the group's own space
-  std::uint32_t path = kNone;         ///< index in path_nodes: the primitive's own node; CSG and instances: the
-                                      ///< innermost of their nodes that has something to say, or kNone
-  std::uint64_t order = 0;            ///< place in the original's order of tests within the group (objects.md 6.2);
-                                      ///< 64 bits because shared structures hold exponentially many places
+  std::uint8_t opacity = kOpaque;   ///< Opacity bits
+  bool animated = false;            ///< its placement varies with time
+  std::uint32_t shape = 0;          ///< index in the pool of its kind (CSG: csgs, instance: instances)
+  std::uint32_t placement = kNone;  ///< index in placements; kNone: the group's own space
+  std::uint32_t path = kNone;       ///< index in path_nodes: the primitive's own node; CSG and instances: the
+                                    ///< innermost of their nodes that has something to say, or kNone
+  std::uint64_t order = 0;  ///< place in the original's order of tests within the group (objects.md 6.2);
+                            ///< 64 bits because shared structures hold exponentially many places
 };
 
 /// One step of the way from a primitive to the world. The world itself has no node.
 struct PathNode {
-  std::uint32_t parent = kNone;       ///< next node outward within the group; kNone: the group's top
-  std::uint32_t surface = kNone;      ///< Scene::surfaces
-  std::uint32_t textures = kNone;     ///< Scene::texture_lists
-  std::uint32_t transform = kNone;    ///< Scene::transforms: this node's own list; also index of level_transforms
+  std::uint32_t parent = kNone;    ///< next node outward within the group; kNone: the group's top
+  std::uint32_t surface = kNone;   ///< Scene::surfaces
+  std::uint32_t textures = kNone;  ///< Scene::texture_lists
+  std::uint32_t transform =
+      kNone;  ///< Scene::transforms: this node's own list; also index of level_transforms
 };
 
 /// All transforms between a primitive and the space of its group, composed.
 struct Placement {
-  AffinePair map;                                   ///< animated ones: at the start of the frame, for sizes only
-  std::vector<const TransformList*> lists;          ///< animated ones: innermost first
+  AffinePair map;                           ///< animated ones: at the start of the frame, for sizes only
+  std::vector<const TransformList*> lists;  ///< animated ones: innermost first
   bool animated() const { return !lists.empty(); }
 };
 
 /// One of union, intersect, difference over two operand groups (objects.md 7).
 struct Csg {
   NodeKind operation = NodeKind::kUnion;
-  std::uint32_t left = 0, right = 0;                ///< groups, in the space of the leaf's group
-  std::uint32_t placement = kNone;                  ///< the CSG object's own space: the scale of its tolerance
-  double tolerance = kEpsilon;                      ///< EPS of `next`, in its own space (objects.md 7.2), smaller for
-                                                    ///< objects smaller than one unit
+  std::uint32_t left = 0, right = 0;  ///< groups, in the space of the leaf's group
+  std::uint32_t placement = kNone;    ///< the CSG object's own space: the scale of its tolerance
+  double tolerance = kEpsilon;        ///< EPS of `next`, in its own space (objects.md 7.2), smaller for
+                                      ///< objects smaller than one unit
 };
 
 /// A shared group standing somewhere. The order of its leaf shifts the ranks of its members.
@@ -77,14 +92,14 @@ struct Instance {
 class Hierarchy;
 
 struct Group {
-  std::uint32_t first = 0, count = 0;               ///< leaves; unbounded ones come first
-  std::uint32_t unbounded = 0;                      ///< how many are unbounded
-  std::uint64_t order_span = 0;                     ///< how many orders its leaves use, instances' contents included
-  Bounds3 bounds;                                   ///< of the bounded leaves, over the frame's shutter interval
-  double condition = 1;                             ///< largest growth of rounding errors by the placements below
-  bool few_simple = false;                          ///< at most two bounded leaves, cheaper to test than a box
-  bool solid = false;                               ///< one closed solid: whoever leaves it was inside its bounds
-  std::shared_ptr<const Hierarchy> hierarchy;       ///< none where a loop over the leaves is as good
+  std::uint32_t first = 0, count = 0;  ///< leaves; unbounded ones come first
+  std::uint32_t unbounded = 0;         ///< how many are unbounded
+  std::uint64_t order_span = 0;        ///< how many orders its leaves use, instances' contents included
+  Bounds3 bounds;                      ///< of the bounded leaves, over the frame's shutter interval
+  double condition = 1;                ///< largest growth of rounding errors by the placements below
+  bool few_simple = false;             ///< at most two bounded leaves, cheaper to test than a box
+  bool solid = false;                  ///< one closed solid: whoever leaves it was inside its bounds
+  std::shared_ptr<const Hierarchy> hierarchy;  ///< none where a loop over the leaves is as good
 };
 
 /// An error found while compiling: a height field that cannot be read, a structure that cannot be held.
@@ -94,19 +109,19 @@ struct CompileError : std::runtime_error {
 };
 
 struct CompileOptions {
-  bool flip_normals = false;            ///< -f (objects.md 4.4)
-  Interval shutter;                     ///< of the first frame
+  bool flip_normals = false;  ///< -f (objects.md 4.4)
+  Interval shutter;           ///< of the first frame
   double frame = 0;
-  bool hierarchies = true;              ///< false: loops over all leaves everywhere (the oracle)
+  bool hierarchies = true;  ///< false: loops over all leaves everywhere (the oracle)
 };
 
 /// Counts for the statistics.
 struct CompileCounts {
-  std::uint64_t primitives = 0;         ///< as objects.md 6.6 counts them
+  std::uint64_t primitives = 0;  ///< as objects.md 6.6 counts them
   std::uint64_t leaves = 0;
   std::uint64_t shared_groups = 0;
-  std::uint64_t unused_objects = 0;     ///< named objects never instanced, hence never built
-  std::uint64_t bytes = 0;              ///< of pools, leaves and hierarchies
+  std::uint64_t unused_objects = 0;  ///< named objects never instanced, hence never built
+  std::uint64_t bytes = 0;           ///< of pools, leaves and hierarchies
 };
 
 class CompiledScene {
@@ -115,10 +130,9 @@ class CompiledScene {
   CompiledScene(const CompiledScene&) = delete;
   CompiledScene& operator=(const CompiledScene&) = delete;
 
-
-  const Scene* scene = nullptr;         ///< must outlive this
+  const Scene* scene = nullptr;  ///< must outlive this
   std::vector<Leaf> leaves;
-  std::vector<Group> groups;            ///< groups[0] is the world
+  std::vector<Group> groups;  ///< groups[0] is the world
   std::vector<PathNode> path_nodes;
   std::vector<Placement> placements;
   std::vector<Csg> csgs;
@@ -149,23 +163,23 @@ class CompiledScene {
   /// Groups, every one after all that it refers to.
   std::vector<std::uint32_t> bottom_up;
 
-  bool has_transparent = false;         ///< some leaf is not opaque: shadow rays may need the ordered walk
+  bool has_transparent = false;  ///< some leaf is not opaque: shadow rays may need the ordered walk
   bool has_textures = false;
   bool has_csg = false;
   bool has_motion = false;
-  double scale = 1;                     ///< largest extent of the bounded part of the world; 1 without one
+  double scale = 1;  ///< largest extent of the bounded part of the world; 1 without one
   CompileCounts counts;
 
   /// Bounds and hierarchies over another frame's shutter interval; does nothing for a scene without motion.
-  /// Leaves may change their numbers within their group. Throws MotionError where a transform is degenerate at the
-  /// start of the frame. Returns whether anything changed.
+  /// Leaves may change their numbers within their group. Throws MotionError where a transform is degenerate
+  /// at the start of the frame. Returns whether anything changed.
   bool prepare_frame(const Interval& shutter, double frame, bool hierarchies);
   /// Bounds, orders and hierarchies anew, over the present frame. (prepare_frame knows when that is needed.)
   void rebuild(bool hierarchies);
   /// Largest extent of a leaf in the space of its group (planes: `scale`).
   double leaf_extent(LeafId leaf) const;
-  /// Conservative bounds in the space of its group at any time of the interval. What CSG and instances refer to is
-  /// taken as of the last prepare_frame.
+  /// Conservative bounds in the space of its group at any time of the interval. What CSG and instances refer
+  /// to is taken as of the last prepare_frame.
   Bounds3 leaf_bounds(LeafId leaf, const Interval& time, double frame) const;
   /// The box of the primitive of a leaf in its own space; not for CSG and instances.
   Bounds3 shape_bounds(const Leaf& leaf) const;
@@ -186,6 +200,7 @@ class CompiledScene {
 };
 
 /// Flattens. Throws CompileError.
-std::unique_ptr<CompiledScene> compile_scene(const Scene& scene, Provider& provider, const CompileOptions& options);
+std::unique_ptr<CompiledScene> compile_scene(const Scene& scene, Provider& provider,
+                                             const CompileOptions& options);
 
 }  // namespace rayshade

@@ -223,11 +223,12 @@ void CompiledScene::rebuild_group(Group& group, bool hierarchies) {
     }
   }
   group.unbounded = static_cast<std::uint32_t>(unbounded.size());
-  group.few_simple = bounded.size() + empty.size() <= 2 && std::all_of(bounded.begin(), bounded.end(), [&](LeafId id) {
-    const Leaf& leaf = leaves[id];
-    return leaf.placement == kNone && (leaf.kind == LeafKind::kSphere || leaf.kind == LeafKind::kBox ||
-                                       leaf.kind == LeafKind::kDisc || leaf.kind == LeafKind::kTriangle);
-  });
+  group.few_simple =
+      bounded.size() + empty.size() <= 2 && std::all_of(bounded.begin(), bounded.end(), [&](LeafId id) {
+        const Leaf& leaf = leaves[id];
+        return leaf.placement == kNone && (leaf.kind == LeafKind::kSphere || leaf.kind == LeafKind::kBox ||
+                                           leaf.kind == LeafKind::kDisc || leaf.kind == LeafKind::kTriangle);
+      });
   // The original's order of tests first, so that the result does not depend on how often this has been done.
   const auto before = [&](LeafId a, LeafId b) { return leaves[a].order < leaves[b].order; };
   std::sort(unbounded.begin(), unbounded.end(), before);
@@ -253,11 +254,11 @@ void CompiledScene::count_bytes() {
     return static_cast<std::uint64_t>(vector.capacity() * sizeof(vector[0]));
   };
   counts.bytes = pool(leaves) + pool(groups) + pool(path_nodes) + pool(path_textured) + pool(path_surfaces) +
-                 pool(leaf_extents) + pool(placements) +
-                 pool(csgs) + pool(instances) + pool(level_transforms) + pool(bottom_up) + pool(planes) +
-                 pool(spheres) + pool(boxes) + pool(discs) + pool(cylinders) + pool(cones) + pool(tori) +
-                 pool(triangles) + pool(smooth_triangles) + pool(uv_triangles) + pool(polygons) +
-                 pool(blobs) + pool(height_fields);
+                 pool(leaf_extents) + pool(placements) + pool(csgs) + pool(instances) +
+                 pool(level_transforms) + pool(bottom_up) + pool(planes) + pool(spheres) + pool(boxes) +
+                 pool(discs) + pool(cylinders) + pool(cones) + pool(tori) + pool(triangles) +
+                 pool(smooth_triangles) + pool(uv_triangles) + pool(polygons) + pool(blobs) +
+                 pool(height_fields);
   for (const Group& group : groups) {
     if (group.hierarchy) counts.bytes += group.hierarchy->bytes();
   }

@@ -227,8 +227,7 @@ struct Hierarchy::Builder {
   }
 };
 
-Hierarchy::Hierarchy(std::vector<Bounds3> boxes, std::span<const std::uint8_t> opacities,
-                     const Bounds3& all)
+Hierarchy::Hierarchy(std::vector<Bounds3> boxes, std::span<const std::uint8_t> opacities, const Bounds3& all)
     : order_(boxes.size()), bounds_(all) {
   std::iota(order_.begin(), order_.end(), 0u);
   Builder builder{*this, opacities, {}};

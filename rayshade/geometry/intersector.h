@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The seam between shading and intersection: spans of queries in, answers out (rules 3 to 5 and 13). Shading does
-// not know who answers: brute force (the oracle), the bounding hierarchy, or adaptive subdivision.
+// The seam between shading and intersection: spans of queries in, answers out (rules 3 to 5 and 13). Shading
+// does not know who answers: brute force (the oracle), the bounding hierarchy, or adaptive subdivision.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@ enum class RayKind : std::uint8_t { kEye, kReflected, kTransmitted, kShadow };
 struct NearestQuery {
   Ray ray;
   double lo = 0, hi = kFar;
-  Opacity mask = kAnyOpacity;       ///< leaves to consider
+  Opacity mask = kAnyOpacity;  ///< leaves to consider
   RayKind kind = RayKind::kEye;
   std::uint16_t depth = 0;
-  std::uint32_t light = kNone;      ///< shadow rays: which light
+  std::uint32_t light = kNone;  ///< shadow rays: which light
 };
 
 struct NearestAnswer {
   Hit hit;
   bool found = false;
-  std::uint32_t tests = 0;          ///< exact tests made for this query
+  std::uint32_t tests = 0;  ///< exact tests made for this query
   std::uint32_t bounds_tests = 0;
 };
 
@@ -67,7 +67,7 @@ std::unique_ptr<Intersector> make_hierarchy(const CompiledScene& scene);
 struct RayClass {
   enum class Kind : std::uint8_t { kSpread, kPoint, kParallel };
   Kind kind = Kind::kSpread;  ///< with extent in space
-  Vec3 point;  ///< kPoint: where they pass; kParallel: their direction, unit length
+  Vec3 point;                 ///< kPoint: where they pass; kParallel: their direction, unit length
 };
 
 struct FasOptions {

@@ -12,7 +12,8 @@ namespace {
 constexpr std::int64_t kNoRank = std::numeric_limits<std::int64_t>::max();
 
 void add_one(std::array<std::uint32_t, RayPack::kMost>& counts, RayPack::Mask mask, int count) {
-  for (int i = 0; i < count; ++i) counts[static_cast<std::size_t>(i)] += static_cast<std::uint32_t>(mask >> i & 1);
+  for (int i = 0; i < count; ++i)
+    counts[static_cast<std::size_t>(i)] += static_cast<std::uint32_t>(mask >> i & 1);
 }
 
 }  // namespace

@@ -173,8 +173,8 @@ bool has_textures(const CompiledScene& scene, const Hit& hit) {
   return false;
 }
 
-// The error so far, the rounding of this map, and that of its inverse, through which every ray that asks for this
-// surface goes, as seen from outside.
+// The error so far, the rounding of this map, and that of its inverse, through which every ray that asks for
+// this surface goes, as seen from outside.
 double carried_error(double error, const AffinePair& map, const Vec3& inner, const Vec3& outer) {
   return norm(map.forward) * (error + 8 * kUnit * magnitude(map.inverse, outer)) +
          8 * kUnit * magnitude(map.forward, inner);
@@ -192,8 +192,8 @@ void resolve_world(const CompiledScene& scene, const Hit& hit, const Ray& world_
   const Leaf& own = scene.leaves[hit.leaf];
   if (own.placement == kNone && hit.instances.count == 0) {
     // Primitive space is the world's.
-    const SurfacePoint surface = with_shape(
-        scene, own, [&](const auto& shape) { return shape.surface_point(world_ray, hit.shape); });
+    const SurfacePoint surface =
+        with_shape(scene, own, [&](const auto& shape) { return shape.surface_point(world_ray, hit.shape); });
     out.point = surface.point;
     out.normal = surface.normal;
     out.geometric_normal = surface.geometric_normal;

@@ -261,7 +261,8 @@ std::string canonical_text(const Scene& scene) {
   return head_text(scene, surfaces) + objects.text();
 }
 
-// The objects' text goes by in pieces, each leaving its hash: a scene of millions of objects is never held as text.
+// The objects' text goes by in pieces, each leaving its hash: a scene of millions of objects is never held as
+// text.
 std::string scene_hash(const Scene& scene) {
   constexpr std::size_t kPiece = 1 << 20;
   SurfaceNames surfaces;

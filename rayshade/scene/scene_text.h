@@ -25,7 +25,8 @@ bool is_language_name(std::string_view text);
 class TextWriter {
  public:
   TextWriter() = default;
-  /// Hands the text over, and forgets it, at the first line end after every `piece` bytes: for who needs it only once.
+  /// Hands the text over, and forgets it, at the first line end after every `piece` bytes: for who needs it
+  /// only once.
   TextWriter(std::size_t piece, std::function<void(const std::string&)> take)
       : piece_(piece), take_(std::move(take)) {}
   void word(std::string_view text);

@@ -44,8 +44,8 @@ struct TexturedHit {
 void evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, const Hit& hit,
                   const Ray& world_ray, const SampleContext& sample, TraceScratch& scratch, TexturedHit& out);
 
-/// The same without copying a surface that no texture changes: returns that of the scene, or `textured`, which then
-/// holds it. (What the shading of millions of hits asks for.)
+/// The same without copying a surface that no texture changes: returns that of the scene, or `textured`,
+/// which then holds it. (What the shading of millions of hits asks for.)
 const Surface& evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, const Hit& hit,
                             const Ray& world_ray, const SampleContext& sample, TraceScratch& scratch,
                             WorldHit& world, Surface& textured);
@@ -54,7 +54,7 @@ const Surface& evaluate_hit(const CompiledScene& scene, const CompiledTextures& 
 struct Transmittance {
   Color color;            ///< transparency times body, textured
   double extinction = 1;  ///< textured
-  bool entering = true;  ///< not meaningful where extinction is 1
+  bool entering = true;   ///< not meaningful where extinction is 1
 };
 
 /// The same surface as evaluate_hit, but only the textures that can change what passes through it are

@@ -46,7 +46,8 @@ Polygon::Polygon(const shape::Polygon& polygon, bool flip) : point_(polygon.poin
       grown(bounds_, (16 * kRoundoff + 4 * normal_error_) * (corners.largest_extent() + max_abs(point_)));
 }
 
-/// Edges by the range of v that they span: flat, so that a polygon of thousands of vertices is two allocations.
+/// Edges by the range of v that they span: flat, so that a polygon of thousands of vertices is two
+/// allocations.
 struct Polygon::Buckets {
   double low, scale;
   std::vector<std::uint32_t> first;  ///< of each bucket in `edges`; one more at the end
@@ -88,11 +89,11 @@ void Polygon::make_buckets() {
   buckets_ = std::move(buckets);
 }
 
-/// The sum of quadrants that objects.md 4.5 speaks of is four times the number of signed crossings of the half-line from
-/// c to the right. A step crosses it only if its ends lie on different sides of v = c.v, and then: with both ends
-/// to the right it does, with both to the left it does not, otherwise the sign of the cross product says so, as it says for
-/// opposite quadrants which way round the step goes (upward a positive sign is a crossing, downward the other). So
-/// only edges that span c.v need to be looked at.
+/// The sum of quadrants that objects.md 4.5 speaks of is four times the number of signed crossings of the
+/// half-line from c to the right. A step crosses it only if its ends lie on different sides of v = c.v, and
+/// then: with both ends to the right it does, with both to the left it does not, otherwise the sign of the
+/// cross product says so, as it says for opposite quadrants which way round the step goes (upward a positive
+/// sign is a crossing, downward the other). So only edges that span c.v need to be looked at.
 bool Polygon::winds_around(Point2 c) const {
   int winding = 0;
   const auto step = [&](Point2 p, Point2 q) {
