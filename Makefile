@@ -90,7 +90,7 @@ lint: lint-packages ## a second compiler, clang-format and clang-tidy
 	clang-format --dry-run -Werror $$(git ls-files '*.cpp' '*.h')
 	cmake -S . -B build-lint -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release
 	cmake --build build-lint -j $(JOBS)
-	run-clang-tidy -p build-lint -quiet -j $(JOBS) '$(CURDIR)/(rayshade|scenes)/.*'
+	run-clang-tidy -p build-lint -quiet -j $(JOBS) '$(CURDIR)/(fas|rayshade|scenes)/.*'
 
 format: lint-packages ## format all sources
 	clang-format -i $$(git ls-files '*.cpp' '*.h')

@@ -17,16 +17,20 @@ namespace fas {
 /// Queries of a span, by leaf. Reused from span to span.
 class LeafGroups {
  public:
+  static constexpr std::uint32_t kEnd = 0xffffffffu;
   struct Group {
     HyperTree* tree;
     const Leaf* leaf;
     HyperTree::Query any;              ///< one of its queries, for the tuner
     std::uint32_t first, last, count;  ///< a chain through next()
+    std::uint32_t slot;                ///< in the table; kEnd: not there
   };
 
   void clear() {
+    for (const Group& group : groups_) {
+      if (group.slot != kEnd) table_[group.slot] = 0;
+    }
     groups_.clear();
-    table_.fill(0);
     latest_ = nullptr;
   }
   /// `place` numbers the query, below `most`.
@@ -43,7 +47,7 @@ class LeafGroups {
       for (;; hash = (hash + 1) % table_.size()) {
         if (table_[hash] == 0) {
           if (groups_.size() >= kMostGroups) return add_overflow(tree, leaf, query, place);
-          groups_.push_back({&tree, leaf, query, place, place, 0});
+          groups_.push_back({&tree, leaf, query, place, place, 0, static_cast<std::uint32_t>(hash)});
           table_[hash] = static_cast<std::uint16_t>(groups_.size());
           break;
         }
@@ -63,10 +67,9 @@ class LeafGroups {
   std::uint32_t next(std::uint32_t place) const { return next_[place]; }
 
  private:
-  static constexpr std::uint32_t kEnd = 0xffffffffu;
   static constexpr std::size_t kMostGroups = 2048;
   void add_overflow(HyperTree& tree, const Leaf* leaf, const HyperTree::Query& query, std::uint32_t place) {
-    groups_.push_back({&tree, leaf, query, place, place, 1});
+    groups_.push_back({&tree, leaf, query, place, place, 1, kEnd});
     latest_ = nullptr;
   }
   std::vector<Group> groups_;

@@ -65,16 +65,6 @@ HWY_ATTR std::uint64_t match(const std::uint8_t* block, int n, bool cuts, Probe 
   return mask;
 }
 
-HWY_ATTR void match_many(const std::uint8_t* block, int n, bool cuts, const std::uint8_t* u,
-                         const std::uint8_t* v, const std::uint8_t* z, int count, std::uint64_t* masks) {
-  const std::size_t s = Block::stride(static_cast<std::size_t>(n));
-  for (int k = 0; k < count; ++k) {
-    std::uint64_t mask = area_mask(block, s, n, u[k], v[k], z[k]);
-    if (cuts && mask != 0) mask &= cut_mask(block, s, n, u[k], v[k]);
-    masks[k] = mask;
-  }
-}
-
 HWY_ATTR std::uint64_t match_rays(const std::uint8_t* block, std::size_t s, std::size_t i, bool cuts,
                                   const std::uint8_t* u, const std::uint8_t* v, const std::uint8_t* z,
                                   int count) {
@@ -128,7 +118,6 @@ namespace fas {
 namespace {
 
 HWY_EXPORT(match);
-HWY_EXPORT(match_many);
 HWY_EXPORT(match_rays);
 HWY_EXPORT(name);
 
@@ -148,11 +137,6 @@ std::uint64_t scalar_match(const std::uint8_t* block, int n, bool cuts, Probe pr
     if (inside) mask |= std::uint64_t{1} << i;
   }
   return mask;
-}
-
-void scalar_match_many(const std::uint8_t* block, int n, bool cuts, const std::uint8_t* u,
-                       const std::uint8_t* v, const std::uint8_t* z, int count, std::uint64_t* masks) {
-  for (int k = 0; k < count; ++k) masks[k] = scalar_match(block, n, cuts, {u[k], v[k], z[k]});
 }
 
 std::uint64_t scalar_match_rays(const std::uint8_t* block, std::size_t s, std::size_t i, bool cuts,
@@ -177,8 +161,7 @@ std::uint64_t scalar_match_rays(const std::uint8_t* block, std::size_t s, std::s
 }  // namespace
 
 Kernels dispatched_kernels() {
-  return {&HWY_DYNAMIC_DISPATCH(match), &HWY_DYNAMIC_DISPATCH(match_many), &HWY_DYNAMIC_DISPATCH(match_rays),
-          HWY_DYNAMIC_DISPATCH(name)()};
+  return {&HWY_DYNAMIC_DISPATCH(match), &HWY_DYNAMIC_DISPATCH(match_rays), HWY_DYNAMIC_DISPATCH(name)()};
 }
 
 const Kernels& kernels() {
@@ -190,7 +173,7 @@ const Kernels& kernels() {
 }
 
 const Kernels& scalar_kernels() {
-  static const Kernels plain{scalar_match, scalar_match_many, scalar_match_rays, "scalar"};
+  static const Kernels plain{scalar_match, scalar_match_rays, "scalar"};
   return plain;
 }
 

@@ -43,9 +43,6 @@ struct Kernels {
   /// Bit i: the area of candidate i of the block holds the probe (and, with cuts, it is within the
   /// half-planes).
   std::uint64_t (*match)(const std::uint8_t* block, int n, bool cuts, Probe probe);
-  /// The same for `count` probes at once: masks[k] belongs to probe k.
-  void (*match_many)(const std::uint8_t* block, int n, bool cuts, const std::uint8_t* u,
-                     const std::uint8_t* v, const std::uint8_t* z, int count, std::uint64_t* masks);
   /// Candidate `i` of a block of stride `s` against `count` probes: bit k where it matches probe k. The
   /// arrays of probes have 64 places, of which those beyond `count` may hold anything.
   std::uint64_t (*match_rays)(const std::uint8_t* block, std::size_t s, std::size_t i, bool cuts,

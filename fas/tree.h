@@ -32,21 +32,18 @@
 
 namespace fas {
 
-/// Costs in nanoseconds, measured while running, shared by the trees of one structure. Racy updates only make
-/// an average of fewer samples: what is found never depends on it.
+/// What handing on a candidate costs in nanoseconds, measured while running, shared by the trees of one
+/// structure. Racy updates only make an average of fewer samples: what is found never depends on it.
 class Tuner {
  public:
-  double test() const { return test_.load(std::memory_order_relaxed); }
   double per_candidate() const { return per_candidate_.load(std::memory_order_relaxed); }
-  void measured_test(double ns) { blend(test_, ns); }
-  void measured_candidate(double ns) { blend(per_candidate_, ns); }
+  void measured_candidate(double ns) {
+    const double old = per_candidate();
+    per_candidate_.store(old + (ns - old) * (1.0 / 32), std::memory_order_relaxed);
+  }
 
  private:
-  static void blend(std::atomic<double>& average, double ns) {
-    const double old = average.load(std::memory_order_relaxed);
-    average.store(old + (ns - old) * (1.0 / 32), std::memory_order_relaxed);
-  }
-  std::atomic<double> test_{10}, per_candidate_{60};
+  std::atomic<double> per_candidate_{60};
 };
 
 /// What one thread remembers of one tree.
@@ -146,7 +143,7 @@ class HyperTree {
   void charge(const Query& query, ThreadState& state, TreeCache& cache, const Leaf& leaf, int wasted_tests,
               int extra_blocks) {
     if (leaf.final != 0 || (wasted_tests | extra_blocks) == 0) return;
-    const double wasted = wasted_tests * tuner_.test() + extra_blocks * kBlockCost;
+    const double wasted = wasted_tests * kTestCost + extra_blocks * kBlockCost;
     auto& work = const_cast<Leaf&>(leaf).work;  // the leaf's only mutable part
     const float sum = work.load(std::memory_order_relaxed) + static_cast<float>(wasted);
     work.store(sum, std::memory_order_relaxed);
@@ -197,7 +194,10 @@ class HyperTree {
   /// A leaf is split when its wasted work exceeds this many times the cost of a split. Splitting too early is
   /// the costly error (memory), too late costs little.
   static constexpr double kPatience = 3;
-  /// Nanoseconds to look at a block; small beside tests, so a constant will do.
+  /// Nanoseconds of an exact test: of a sphere or triangle; those of other shapes cost more, and are then
+  /// split late, which costs little.
+  static constexpr double kTestCost = 10;
+  /// Nanoseconds to look at a block.
   static constexpr double kBlockCost = 6;
 
   View view_;

@@ -178,6 +178,24 @@ bool group_occludes(TraceContext& context, std::uint32_t index, const Ray& ray, 
       });
 }
 
+void ask_world(const CompiledScene& scene, const NearestQuery& query, NearestAnswer& answer,
+               TraceScratch& scratch) {
+  TraceContext context(scene, scratch);
+  start_search(answer.hit, query.hi);
+  answer.found = improve_by_group(context, 0, query.ray, query.lo, query.mask, 0, answer.hit) &&
+                 before_far_limit(answer.hit, query.hi);
+  answer.tests = context.tests;
+  answer.bounds_tests = context.bounds_tests;
+}
+
+void ask_world(const CompiledScene& scene, const OcclusionQuery& query, OcclusionAnswer& answer,
+               TraceScratch& scratch) {
+  TraceContext context(scene, scratch);
+  answer.occluded = group_occludes(context, 0, query.ray, query.lo, query.hi, query.mask);
+  answer.tests = context.tests;
+  answer.bounds_tests = context.bounds_tests;
+}
+
 bool primitive_enters(const CompiledScene& scene, const Leaf& leaf, const Ray& local, double lo,
                       const ShapeHit& hit) {
   switch (leaf.kind) {

@@ -97,22 +97,6 @@ class FasIntersector final : public Intersector {
     return *static_cast<Batch*>(scratch.batch.get());
   }
 
-  void ask_hierarchy(const NearestQuery& query, NearestAnswer& answer, TraceScratch& scratch) const {
-    TraceContext context(scene_, scratch);
-    start_search(answer.hit, query.hi);
-    answer.found = improve_by_group(context, 0, query.ray, query.lo, query.mask, 0, answer.hit) &&
-                   before_far_limit(answer.hit, query.hi);
-    answer.tests = context.tests;
-    answer.bounds_tests = context.bounds_tests;
-  }
-
-  void ask_hierarchy(const OcclusionQuery& query, OcclusionAnswer& answer, TraceScratch& scratch) const {
-    TraceContext context(scene_, scratch);
-    answer.occluded = group_occludes(context, 0, query.ray, query.lo, query.hi, query.mask);
-    answer.tests = context.tests;
-    answer.bounds_tests = context.bounds_tests;
-  }
-
   bool from_eye(const NearestQuery& query) const {
     if (query.kind != RayKind::kEye || !eye_ || query.mask != kAnyOpacity) return false;
     const Vec3 &o = query.ray.origin, &d = query.ray.direction;
@@ -129,7 +113,7 @@ class FasIntersector final : public Intersector {
     for (std::uint32_t i = 0; i < count; ++i) {
       const NearestQuery& query = queries[i];
       if (!from_eye(query)) {
-        ask_hierarchy(query, answers[i], scratch);
+        ask_world(scene_, query, answers[i], scratch);
         continue;
       }
       const double d[3] = {query.ray.direction.x, query.ray.direction.y, query.ray.direction.z};
@@ -139,7 +123,7 @@ class FasIntersector final : public Intersector {
       switch (eye_->find(place, state, cache, leaf, batch.u[i], batch.v[i])) {
         case fas::HyperTree::Place::kElsewhere:
           ++cache.counts.elsewhere;
-          ask_hierarchy(query, answers[i], scratch);
+          ask_world(scene_, query, answers[i], scratch);
           break;
         case fas::HyperTree::Place::kNothing:
           ++cache.counts.outside;
@@ -202,7 +186,7 @@ class FasIntersector final : public Intersector {
       const Vec3 &o = query.ray.origin, &d = query.ray.direction;
       const double origin[3] = {o.x, o.y, o.z}, direction[3] = {d.x, d.y, d.z};
       if (!tree || query.mask != queries[0].mask || !fas::aims_at(tree->view(), origin, direction)) {
-        ask_hierarchy(query, answers[i], scratch);
+        ask_world(scene_, query, answers[i], scratch);
         continue;
       }
       const fas::HyperTree::Query place = tree->toward(origin);
@@ -211,7 +195,7 @@ class FasIntersector final : public Intersector {
       switch (tree->find(place, state, cache, leaf, batch.u[i], batch.v[i])) {
         case fas::HyperTree::Place::kElsewhere:
           ++cache.counts.elsewhere;
-          ask_hierarchy(query, answers[i], scratch);
+          ask_world(scene_, query, answers[i], scratch);
           break;
         case fas::HyperTree::Place::kNothing:
           ++cache.counts.outside;

@@ -71,16 +71,7 @@ class GroupIntersector : public Intersector {
         nearest_in_pack(tracer);
       }
     }
-    for (; i < queries.size(); ++i) {
-      const NearestQuery& query = queries[i];
-      NearestAnswer& answer = answers[i];
-      TraceContext context(scene_, scratch);
-      start_search(answer.hit, query.hi);
-      answer.found = improve_by_group(context, 0, query.ray, query.lo, query.mask, 0, answer.hit) &&
-                     before_far_limit(answer.hit, query.hi);
-      answer.tests = context.tests;
-      answer.bounds_tests = context.bounds_tests;
-    }
+    for (; i < queries.size(); ++i) ask_world(scene_, queries[i], answers[i], scratch);
   }
 
   void occluded(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
@@ -94,13 +85,7 @@ class GroupIntersector : public Intersector {
         tracer.answer_occluded(answers.subspan(i), occluded_in_pack(tracer));
       }
     }
-    for (; i < queries.size(); ++i) {
-      const OcclusionQuery& query = queries[i];
-      TraceContext context(scene_, scratch);
-      answers[i].occluded = group_occludes(context, 0, query.ray, query.lo, query.hi, query.mask);
-      answers[i].tests = context.tests;
-      answers[i].bounds_tests = context.bounds_tests;
-    }
+    for (; i < queries.size(); ++i) ask_world(scene_, queries[i], answers[i], scratch);
   }
 
  private:

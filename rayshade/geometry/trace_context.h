@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "rayshade/geometry/intersector.h"
 #include "rayshade/geometry/trace.h"
 
 namespace rayshade {
@@ -44,6 +45,11 @@ bool improve_by_csg(TraceContext& context, const Leaf& leaf, const Ray& ray, dou
                     Hit& best);
 bool group_occludes(TraceContext& context, std::uint32_t group, const Ray& ray, double lo, double hi,
                     Opacity mask);
+/// One query, answered by the world's group alone.
+void ask_world(const CompiledScene& scene, const NearestQuery& query, NearestAnswer& answer,
+               TraceScratch& scratch);
+void ask_world(const CompiledScene& scene, const OcclusionQuery& query, OcclusionAnswer& answer,
+               TraceScratch& scratch);
 /// The enter test of objects.md 3 for a primitive.
 bool primitive_enters(const CompiledScene& scene, const Leaf& leaf, const Ray& local, double lo,
                       const ShapeHit& hit);
