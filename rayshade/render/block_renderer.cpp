@@ -13,11 +13,12 @@ namespace {
 /// Samples traced together: enough to fill spans of queries, few enough to stay in cache.
 constexpr std::size_t kChunk = 1024;
 
-void note_layer(const SampleResult& result, BlockPixels::Layer& layer) {
+void note_layer(const SampleResult& result, const std::vector<std::uint32_t>& numbers,
+                BlockPixels::Layer& layer) {
   layer.depth = result.hit ? static_cast<float>(result.distance) : std::numeric_limits<float>::infinity();
   for (int axis = 0; axis < 3; ++axis)
     layer.normal[axis] = result.hit ? static_cast<float>(result.normal[axis]) : 0.0f;
-  layer.object = result.hit ? static_cast<float>(result.leaf + 1) : 0.0f;
+  layer.object = result.hit && !numbers.empty() ? static_cast<float>(numbers[result.leaf]) : 0.0f;
 }
 
 void store(double* pixel, const Color& color, double alpha) {
@@ -137,7 +138,7 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
       store(&out.rgba[4 * index], one.color, one.hit && !frame_.sample_map ? 1.0 : 0.0);
       if (layered) {
         BlockPixels::Layer& layer = out.layers[index];
-        note_layer(one, layer);
+        note_layer(one, frame_.numbers, layer);
         layer.samples = 1;
         layer.tests = static_cast<float>(one.tests);
         layer.bounds_tests = static_cast<float>(one.bounds_tests);

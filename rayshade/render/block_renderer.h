@@ -18,9 +18,10 @@ struct FrameScene {
   ShadingScene shading;
   const Camera* camera = nullptr;
   const SampleGrid* grid = nullptr;
-  bool layers = false;      ///< depth, normal, object and samples are wanted
-  bool cost = false;        ///< tests and time per pixel are wanted
-  bool sample_map = false;  ///< alpha tells which pixels are fully sampled (-m)
+  bool layers = false;                 ///< depth, normal, object and samples are wanted
+  bool cost = false;                   ///< tests and time per pixel are wanted
+  std::vector<std::uint32_t> numbers;  ///< object_numbers, where layers are wanted or a pixel is explained
+  bool sample_map = false;             ///< alpha tells which pixels are fully sampled (-m)
 };
 
 /// Finished pixels of a rectangle, row by row.

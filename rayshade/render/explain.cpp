@@ -51,11 +51,11 @@ const char* name_of(LeafKind kind) {
 
 std::string ExplainText::object_name(const Hit& hit) const {
   const Leaf& leaf = frame_.shading.compiled->leaves[hit.leaf];
-  std::string out = fmt::format("{} {}", name_of(leaf.kind), hit.leaf + 1);
+  std::string out = fmt::format("{} {}", name_of(leaf.kind), frame_.numbers[hit.leaf]);
   if (hit.instances.count > 0) {
     out += " in instance";
     for (std::uint32_t i = 0; i < hit.instances.count; ++i)
-      out += fmt::format(" {}", hit.instances.leaves[i] + 1);
+      out += fmt::format(" {}", frame_.numbers[hit.instances.leaves[i]]);
   }
   return out;
 }

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "rayshade/render/explain.h"
+#include "rayshade/render/object_numbers.h"
 #include "rayshade/schedule/block_grid.h"
 #include "rayshade/texture/compiled_textures.h"
 
@@ -178,7 +179,9 @@ void Renderer::prepare_frame(int frame) {
   if (located(
           [&] { return compiled_->prepare_frame(shutter_of(settings_, frame), frame, !brute_force()); })) {
     intersector_->scene_changed();
+    frame_.numbers.clear();
   }
+  if (options_.layers && frame_.numbers.empty()) frame_.numbers = object_numbers(*compiled_);
 }
 
 bool Renderer::render_frame(int frame, FrameBuffer& picture, const std::atomic<bool>& stop,
@@ -260,6 +263,7 @@ bool Renderer::render_frame(int frame, FrameBuffer& picture, const std::atomic<b
 
 std::string Renderer::explain(int frame, int x, int y) {
   prepare_frame(frame);
+  frame_.numbers = object_numbers(*compiled_);
   BlockRenderer renderer(frame_);
   renderer.tree().scratch().brute_force = brute_force();
   ExplainText text(frame_);
