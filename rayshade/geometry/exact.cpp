@@ -2,7 +2,7 @@
 // exact(leaf, ray, interval), and the loops over groups.
 #include <numeric>
 
-#include "rayshade/geometry/hierarchy.h"
+#include "fas/hierarchy.h"
 #include "rayshade/geometry/trace_context.h"
 
 namespace rayshade {
@@ -126,16 +126,25 @@ bool over_group(TraceContext& context, const Group& group, const Ray& ray, doubl
     return clip_to_box(group.bounds, group.condition, ray, lo, limit()) &&
            test(bounded, group.first + group.count);
   }
-  BoxProbe probe;
-  if (!make_probe(group.bounds, group.condition, ray, lo, limit(), probe)) return false;
+  fas::BoxProbe probe;
+  const double o[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
+  const double d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
+  if (!fas::make_probe(group.hierarchy->bounds(), group.condition, o, d, lo, limit(), probe)) return false;
   if (!probe.usable) return test(bounded, group.first + group.count);
-  return traverse(*group.hierarchy, probe, mask, context.bounds_tests, limit,
-                  [&](std::uint32_t first, std::uint32_t count) {
-                    return test(bounded + first, bounded + first + count);
-                  });
+  return fas::traverse(*group.hierarchy, probe, mask, context.bounds_tests, limit,
+                       [&](std::uint32_t first, std::uint32_t count) {
+                         return test(bounded + first, bounded + first + count);
+                       });
 }
 
 }  // namespace
+
+bool clip_to_box(const Bounds3& box, double condition, const Ray& ray, double lo, double hi) {
+  const double o[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
+  const double d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
+  return fas::may_meet({{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}}, condition, o, d, lo,
+                       hi);
+}
 
 bool improve_by_leaf(TraceContext& context, LeafId id, const Ray& ray, double lo, Opacity mask,
                      std::uint64_t base, Hit& best) {

@@ -119,6 +119,7 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider&
     compile.shutter = shutter_of(settings, settings.first_frame);
     compile.frame = settings.first_frame;
     compile.hierarchies = !brute_force();
+    compile.threads = options.threads;
     compiled_ = compile_scene(scene, provider, compile);
     textures_ = std::make_unique<CompiledTextures>(*compiled_, provider);
   });
