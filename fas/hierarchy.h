@@ -51,8 +51,8 @@ class Hierarchy {
   static constexpr std::uint32_t kLeafBit = 0x80000000u;
   static constexpr int kCountShift = 27;
   static constexpr std::uint32_t kEnd = 0xffffffffu;
-  /// A traversal stack of this size never overflows: see kDeepest of the builder.
-  static constexpr int kStackSize = 384;
+  /// A traversal stack of this size never overflows: see kDeepest of the builder, and Cut.
+  static constexpr int kStackSize = 416;
 
   struct alignas(64) Node {
     float planes[2][3][kWidth];    ///< low and high, axis, child; empty lanes: inside out
@@ -81,6 +81,13 @@ class Hierarchy {
   Point center_{};
 };
 
+/// Where a traversal starts: lanes of nodes of their own, in place of those of the root.
+struct Cut {
+  const Hierarchy::Node* nodes = nullptr;  ///< null: the whole hierarchy
+  std::uint32_t count = 0;                 ///< nodes; at most four
+  bool whole() const { return nodes == nullptr; }
+};
+
 /// The state of a traversal: what is still to be visited.
 struct Walk {
   struct Pending {
@@ -100,6 +107,8 @@ struct WalkKernel {
   /// common with `mask`: an encoded child, or Hierarchy::kEnd.
   std::uint32_t (*next)(const Hierarchy::Node* nodes, const BoxProbe& probe, float far, std::uint8_t mask,
                         Walk& walk);
+  /// Starts anew with the lanes of a cut that the ray may meet, nearest first.
+  void (*start)(Cut cut, const BoxProbe& probe, float far, std::uint8_t mask, Walk& walk);
   const char* name;
 };
 const WalkKernel& walk_kernel();
@@ -111,11 +120,12 @@ const WalkKernel& scalar_walk_kernel();
 /// shrinks: a function giving the far limit t of what is still of interest. `visit(first, count)` tests the
 /// primitives at those places and returns true to end the traversal. Returns whether `visit` ended it.
 template <class Limit, class Visit>
-bool traverse(const Hierarchy& hierarchy, const BoxProbe& probe, std::uint8_t mask, std::uint32_t& box_tests,
-              const Limit& limit, const Visit& visit) {
+bool traverse(const Hierarchy& hierarchy, const Cut& cut, const BoxProbe& probe, std::uint8_t mask,
+              std::uint32_t& box_tests, const Limit& limit, const Visit& visit) {
   const WalkKernel& kernel = walk_kernel();
   const Hierarchy::Node* nodes = hierarchy.nodes().data();
   Walk walk;
+  if (!cut.whole()) kernel.start(cut, probe, probe.limit(limit()), mask, walk);
   bool ended = false;
   for (;;) {
     const float far = probe.limit(limit());

@@ -18,7 +18,7 @@ constexpr int kBins = 16;
 /// Below this depth ranges are halved whatever the boxes look like: 2^27 boxes end nine levels further down,
 /// and with seven entries a level the traversal stack holds.
 constexpr int kDeepest = 40;
-static_assert(7 * (kDeepest + 10) + 8 <= Hierarchy::kStackSize);
+static_assert(7 * (kDeepest + 10) + 32 <= Hierarchy::kStackSize);
 /// Runs of this few share a lane rather than get a node of their own.
 constexpr std::uint32_t kRun = 3;
 /// Ranges of this share of the whole are tasks of their own; more than the threads, so that none waits long.

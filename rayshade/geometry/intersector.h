@@ -63,22 +63,26 @@ std::unique_ptr<Intersector> make_brute_force(const CompiledScene& scene);
 /// A bounding hierarchy per group.
 std::unique_ptr<Intersector> make_hierarchy(const CompiledScene& scene);
 
-/// A class of rays without extent in space: all pass through one point, or all are parallel.
+/// A class of rays: all pass through one point, all are parallel, or they have extent in space.
 struct RayClass {
   enum class Kind : std::uint8_t { kSpread, kPoint, kParallel };
-  Kind kind = Kind::kSpread;  ///< with extent in space
-  Vec3 point;                 ///< kPoint: where they pass; kParallel: their direction, unit length
+  Kind kind = Kind::kSpread;
+  Vec3 point;      ///< kPoint: where they pass; kParallel: their direction, unit length
+  Bounds3 bounds;  ///< kSpread: where they start, or, rays toward a light, end; empty: anywhere
 };
 
 struct FasOptions {
-  RayClass eye;                                 ///< of eye rays; kSpread: with a lens
+  RayClass eye;                                 ///< of eye rays
   std::vector<RayClass> lights;                 ///< of shadow rays, by their light number
   std::size_t memory = std::size_t{256} << 20;  ///< bytes for all trees
   fas::Split split = fas::Split::kAdaptive;
+  double rays = 1e6;   ///< expected of every class, about: how much building may pay
+  bool choose = true;  ///< false: all rays go through the trees of their classes, even where the hierarchy is
+                       ///< faster; so does Split::kAlways
 };
 
-/// Adaptive subdivision: a hyper-tree per class of rays over the world's leaves, the hierarchy for all other
-/// rays. `scene` must have hierarchies.
+/// Adaptive subdivision: a hyper-tree per class of rays over the world's leaves. `scene` must have
+/// hierarchies.
 std::unique_ptr<Intersector> make_fas(const CompiledScene& scene, const FasOptions& options);
 
 }  // namespace rayshade

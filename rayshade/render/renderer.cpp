@@ -153,10 +153,15 @@ Renderer::~Renderer() = default;
 
 FasOptions Renderer::fas_options() const {
   FasOptions options;
-  if (!camera_->has_lens()) options.eye = {RayClass::Kind::kPoint, camera_->eye()};
+  if (camera_->has_lens())
+    options.eye.bounds = camera_->lens_bounds();
+  else
+    options.eye = {RayClass::Kind::kPoint, camera_->eye(), {}};
   for (const ShadingLight& light : frame_.shading.lights) options.lights.push_back(shadow_class(light));
   options.memory = options_.fas_memory > 0 ? options_.fas_memory : available_memory() / 4;
   options.split = options_.fas_split;
+  options.rays = static_cast<double>(settings_.window_width()) * settings_.window_height() *
+                 settings_.samples * settings_.samples;
   return options;
 }
 
