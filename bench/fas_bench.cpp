@@ -4,7 +4,10 @@
 // Records the rays of each scene and replays them through adaptive subdivision, through the hierarchy alone,
 // and through Embree's single rays (fast and robust) and 16-wide packets, in turn within one run, on one
 // thread. Every repetition starts without trees, and building is part of the time. Prints nanoseconds per ray
-// of each class, ratios, and memory; wrong answers of ours end the run.
+// of each class and ratios; wrong answers of ours end the run.
+//
+// Rays are recorded and replayed in batches, so that memory does not grow with samples; the trees of a
+// repetition stay from batch to batch.
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 
@@ -14,8 +17,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "bench/recording.h"
 #include "bench/yardstick.h"
@@ -159,6 +165,87 @@ struct Arguments {
   std::vector<std::string> scenes;
 };
 
+// A batch of gears is about 1 GB, and as much again while its classes are told apart.
+constexpr std::size_t kBatch = 6'000'000;
+
+/// Replays the batches of one scene in all ways, and adds up.
+class Contest {
+ public:
+  Contest(const CompiledScene& scene, const FasOptions& options, int repeat, const char* name)
+      : name_(name), fast_(scene, false), robust_(scene, true), repetitions_(repeat) {
+    for (Repetition& repetition : repetitions_) {
+      repetition.by_class = make_fas(scene, options);
+      repetition.mixed = make_fas(scene, options);
+    }
+    hierarchy_ = make_hierarchy(scene);
+  }
+
+  void replay_batch(const Recording& recording) {
+    Stream streams[kClasses];
+    for (int c = 0; c < kClasses; ++c) {
+      streams[c] = stream_of(recording, static_cast<Class>(c));
+      rays_[c] += static_cast<double>(streams[c].places.size());
+    }
+    for (std::size_t i = 0; i < repetitions_.size(); ++i)
+      for (int turn = 0; turn < kWays; ++turn)
+        replay_way(static_cast<Way>((turn + i) % kWays), recording, streams, repetitions_[i]);
+  }
+
+  /// Of all batches: medians of the repetitions. Building the hierarchy is left to the caller.
+  Times times() const {
+    Times out;
+    const auto median_of = [&](auto&& value) {
+      std::vector<double> values;
+      for (const Repetition& repetition : repetitions_) values.push_back(value(repetition));
+      return median(values);
+    };
+    for (int c = 0; c < kClasses; ++c) out.rays[c] = rays_[c];
+    for (int way = 0; way < kWays; ++way) {
+      for (int c = 0; c < kClasses; ++c)
+        out.seconds[way][c] = median_of([&](const Repetition& r) { return r.seconds[way][c]; });
+      out.mixed[way] = median_of([&](const Repetition& r) { return r.mixed_seconds[way]; });
+    }
+    out.packets = median_of([](const Repetition& r) { return r.packets; });
+    out.build[kFast] = fast_.build_seconds();
+    out.build[kRobust] = robust_.build_seconds();
+    return out;
+  }
+
+ private:
+  struct Repetition {
+    std::unique_ptr<Intersector> by_class, mixed;  ///< trees of their own: both start without any
+    double seconds[kWays][kClasses] = {};
+    double mixed_seconds[kWays] = {};
+    double packets = 0;
+  };
+
+  void replay_way(Way way, const Recording& recording, const Stream* streams, Repetition& out) {
+    if (way == kFas || way == kHierarchy) {
+      const Intersector& by_class = way == kFas ? *out.by_class : *hierarchy_;
+      const Intersector& mixed = way == kFas ? *out.mixed : *hierarchy_;
+      for (int c = 0; c < kClasses; ++c)
+        out.seconds[way][c] +=
+            replay(by_class, streams[c], recording, name_, way == kFas ? "fas" : "hierarchy");
+      out.mixed_seconds[way] += replay_mixed(mixed, recording);
+      return;
+    }
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+    Yardstick& embree = way == kFast ? fast_ : robust_;
+    for (int c = 0; c < kClasses; ++c) out.seconds[way][c] += replay(embree, streams[c]);
+    out.mixed_seconds[way] += replay_mixed(embree, recording);
+    if (way == kFast) out.packets += replay(embree, streams[kEye], true);
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_OFF);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_OFF);
+  }
+
+  const char* name_;
+  Yardstick fast_, robust_;
+  std::unique_ptr<Intersector> hierarchy_;
+  std::vector<Repetition> repetitions_;
+  double rays_[kClasses] = {};
+};
+
 Times measure(const std::string& path, const Arguments& arguments) {
   FileProvider provider;
   ParseResult parsed = parse_scene(provider, path, {});
@@ -176,62 +263,31 @@ Times measure(const std::string& path, const Arguments& arguments) {
   Recording recording;
   RenderOptions options;
   options.intersector = IntersectorKind::kHierarchy;
+  std::function<void(const Recording&)> replay_batch;
   options.wrap = [&](const CompiledScene&,
                      std::unique_ptr<Intersector> inner) -> std::unique_ptr<Intersector> {
-    return std::make_unique<Recorder>(std::move(inner), recording);
+    return std::make_unique<Recorder>(std::move(inner), recording, kBatch,
+                                      [&](const Recording& batch) { replay_batch(batch); });
   };
   Renderer renderer(parsed.scene, settings, provider, options);
+  std::optional<Contest> contest;  // from the first batch on: the classes of rays are the frame's
+  replay_batch = [&](const Recording& batch) {
+    if (!contest)
+      contest.emplace(renderer.compiled(), renderer.fas_options(), arguments.repeat, path.c_str());
+    contest->replay_batch(batch);
+  };
   FrameBufferOptions buffer;
   buffer.width = settings.window_width();
   buffer.height = settings.window_height();
   FrameBuffer picture(buffer);
   const std::atomic<bool> stop{false};
   renderer.render_frame(0, picture, stop, {});
+  replay_batch(recording);
 
-  Times out;
-  const CompiledScene& scene = renderer.compiled();
-  FasOptions fas_options = renderer.fas_options();
-  Stream streams[kClasses];
-  for (int c = 0; c < kClasses; ++c) {
-    streams[c] = stream_of(recording, static_cast<Class>(c));
-    out.rays[c] = static_cast<double>(streams[c].places.size());
-  }
-  Yardstick fast(scene, false), robust(scene, true);
-  out.build[kFast] = fast.build_seconds();
-  out.build[kRobust] = robust.build_seconds();
-  {
-    const double start = now();
-    const_cast<CompiledScene&>(scene).rebuild(true);  // gives the same again
-    out.build[kHierarchy] = out.build[kFas] = now() - start;
-  }
-  std::vector<double> seconds[kWays][kClasses], mixed[kWays], packets;
-  for (int repetition = 0; repetition < arguments.repeat; ++repetition) {
-    for (int turn = 0; turn < kWays; ++turn) {
-      const int way = (turn + repetition) % kWays;
-      if (way == kFas || way == kHierarchy) {
-        const auto intersector = way == kFas ? make_fas(scene, fas_options) : make_hierarchy(scene);
-        for (int c = 0; c < kClasses; ++c)
-          seconds[way][c].push_back(
-              replay(*intersector, streams[c], recording, path.c_str(), way == kFas ? "fas" : "hierarchy"));
-        const auto fresh = way == kFas ? make_fas(scene, fas_options) : make_hierarchy(scene);
-        mixed[way].push_back(replay_mixed(*fresh, recording));
-      } else {
-        _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-        _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-        Yardstick& embree = way == kFast ? fast : robust;
-        for (int c = 0; c < kClasses; ++c) seconds[way][c].push_back(replay(embree, streams[c]));
-        mixed[way].push_back(replay_mixed(embree, recording));
-        if (way == kFast) packets.push_back(replay(embree, streams[kEye], true));
-        _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_OFF);
-        _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_OFF);
-      }
-    }
-  }
-  for (int way = 0; way < kWays; ++way) {
-    for (int c = 0; c < kClasses; ++c) out.seconds[way][c] = median(seconds[way][c]);
-    out.mixed[way] = median(mixed[way]);
-  }
-  out.packets = median(packets);
+  Times out = contest->times();
+  const double start = now();
+  const_cast<CompiledScene&>(renderer.compiled()).rebuild(true);  // gives the same again
+  out.build[kHierarchy] = out.build[kFas] = now() - start;
   return out;
 }
 

@@ -16,12 +16,6 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-struct UserGeometry {
-  const CompiledScene* scene;
-  const std::vector<LeafId>* leaves;
-  TraceScratch* scratch;
-};
-
 Ray ray_of(float ox, float oy, float oz, float dx, float dy, float dz) {
   Ray ray;
   ray.origin = {ox, oy, oz};
@@ -139,11 +133,9 @@ void Yardstick::build(bool robust) {
     rtcReleaseGeometry(mesh);
   }
   if (!others_.empty()) {
-    static thread_local UserGeometry user;
-    user = {&scene_, &others_, &scratch_};
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(others_.size()));
-    rtcSetGeometryUserData(geometry, &user);
+    rtcSetGeometryUserData(geometry, &user_);
     rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry, intersect);
     rtcSetGeometryOccludedFunction(geometry, occlude);

@@ -268,6 +268,18 @@ TEST(Spd, FormatsAgreeInCounts) {
   }
 }
 
+// The picture of the POV-Ray scene is that of the Rayshade scene: one gear of five is a solid with one
+// interior, the ground mirrors what the specular colour leaves, every secondary ray of Rayshade's exists.
+TEST(Spd, PovDescribesTheSameWork) {
+  const std::string pov = generate("gears", 2, "pov");
+  EXPECT_EQ(count_lines(pov, "  interior {"), 2u);
+  EXPECT_EQ(count_lines(pov, "union {"), 2u);
+  const auto start = pov.find("union {"), end = pov.find(" material {", start);
+  EXPECT_EQ(count_lines(pov.substr(start, end - start), "polygon {"), 146u);
+  EXPECT_NE(pov.find("phong 0.3 phong_size 3.0827 reflection 0.18 "), std::string::npos);
+  EXPECT_NE(pov.find("max_trace_level 6 "), std::string::npos);
+}
+
 TEST(Spd, UnknownNamesAreNull) {
   std::ostringstream out;
   EXPECT_EQ(make_writer("obj", out), nullptr);
