@@ -235,8 +235,8 @@ class ObjectWriter {
 namespace {
 
 /// The settings, lights and surfaces, which stand before the objects that use them.
-std::string head_text(const Scene& scene, const SurfaceNames& surfaces) {
-  TextWriter head;
+std::string head_text(const Scene& scene, const SurfaceNames& surfaces, NumberForm form) {
+  TextWriter head(form);
   write_settings(head, scene.settings);
   for (const Light& light : scene.lights) {
     write_light(head, light);
@@ -258,18 +258,20 @@ std::string canonical_text(const Scene& scene) {
   SurfaceNames surfaces;
   TextWriter objects;
   write_objects(scene, objects, surfaces);
-  return head_text(scene, surfaces) + objects.text();
+  return head_text(scene, surfaces, NumberForm::kDecimal) + objects.text();
 }
 
-// The objects' text goes by in pieces, each leaving its hash: a scene of millions of objects is never held as
-// text.
+// The same writers as the text's, numbers being left as bits. The objects go by in pieces, each leaving its
+// hash: a scene of millions of objects is never held as text.
 std::string scene_hash(const Scene& scene) {
-  constexpr std::size_t kPiece = 1 << 20;
+  constexpr std::size_t kPiece = 1 << 16;
   SurfaceNames surfaces;
   std::string digests;
-  TextWriter objects(kPiece, [&](const std::string& piece) { digests += hash128(piece).text(); });
+  TextWriter objects(NumberForm::kBits, kPiece,
+                     [&](const std::string& piece) { digests += hash128(piece).text(); });
   write_objects(scene, objects, surfaces);
-  return hash128(head_text(scene, surfaces) + digests + hash128(objects.text()).text()).text();
+  return hash128(head_text(scene, surfaces, NumberForm::kBits) + digests + hash128(objects.text()).text())
+      .text();
 }
 
 }  // namespace rayshade

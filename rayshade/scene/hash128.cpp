@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cstddef>
+#include <cstring>
 
 namespace rayshade {
 namespace {
@@ -17,6 +18,14 @@ constexpr std::uint64_t kSecond = 0x4cf5ad432745937fu;
 std::uint64_t word(std::string_view bytes) {
   std::uint64_t out = 0;
   for (std::size_t i = bytes.size(); i-- > 0;) out = out << 8 | static_cast<unsigned char>(bytes[i]);
+  return out;
+}
+
+/// The same of exactly eight, which is what a long text mostly consists of.
+std::uint64_t whole_word(const char* bytes) {
+  std::uint64_t out = 0;
+  std::memcpy(&out, bytes, sizeof out);
+  if constexpr (std::endian::native == std::endian::big) out = word({bytes, sizeof out});
   return out;
 }
 
@@ -35,9 +44,9 @@ Hash128 hash128(std::string_view bytes, std::uint32_t seed) {
   const std::size_t size = bytes.size();
   std::uint64_t a = seed, b = seed;
   for (; bytes.size() >= 16; bytes.remove_prefix(16)) {
-    a ^= scrambled_first(word(bytes.substr(0, 8)));
+    a ^= scrambled_first(whole_word(bytes.data()));
     a = (std::rotl(a, 27) + b) * 5 + 0x52dce729u;
-    b ^= scrambled_second(word(bytes.substr(8, 8)));
+    b ^= scrambled_second(whole_word(bytes.data() + 8));
     b = (std::rotl(b, 31) + a) * 5 + 0x38495ab5u;
   }
   if (bytes.size() > 8) b ^= scrambled_second(word(bytes.substr(8)));

@@ -54,7 +54,8 @@ Light default_light();
 
 /// The scene as canonical text: parsing it again gives the same text, and rendering it the same bytes.
 std::string canonical_text(const Scene& scene);
-/// A 128-bit name of the scene: a hash of its canonical text, as 32 hexadecimal digits.
+/// A 128-bit name of the scene, as 32 hexadecimal digits: a hash of its canonical text with numbers in binary
+/// (NumberForm::kBits), so that scenes have the same name where they have the same text.
 std::string scene_hash(const Scene& scene);
 
 }  // namespace rayshade

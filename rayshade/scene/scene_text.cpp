@@ -3,7 +3,9 @@
 #include "rayshade/scene/scene_text.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "rayshade/scene/number_text.h"
 
@@ -95,6 +97,15 @@ void TextWriter::word(std::string_view text) {
 }
 
 void TextWriter::number(double value) {
+  if (form_ == NumberForm::kBits) {
+    if (std::isnan(value)) value = std::numeric_limits<double>::quiet_NaN();
+    auto bits = std::bit_cast<std::uint64_t>(value);
+    char bytes[9];
+    bytes[0] = '\0';  // which no word holds
+    for (int i = 1; i < 9; ++i, bits >>= 8) bytes[i] = static_cast<char>(bits & 0xff);
+    text_.append(bytes, sizeof bytes);
+    return;
+  }
   separate();
   append_number(text_, value);
 }
@@ -142,21 +153,25 @@ void TextWriter::end_line(int depth) {
 }
 
 const std::string& SurfaceNames::name(const Surface& surface) {
-  TextWriter components;
-  write_components(components, surface);
-  const auto [entry, added] = names_.try_emplace(components.text());
-  if (added) {
-    entry->second = "surface_" + std::to_string(names_.size());
-    order_.push_back(&*entry);
+  const auto [known, first_time] = by_address_.try_emplace(&surface);
+  if (first_time) {
+    TextWriter components(NumberForm::kBits);
+    write_components(components, surface);
+    const auto [entry, added] = names_.try_emplace(components.text());
+    if (added) {
+      entry->second = "surface_" + std::to_string(names_.size());
+      order_.push_back({&surface, &entry->second});
+    }
+    known->second = &entry->second;
   }
-  return entry->second;
+  return *known->second;
 }
 
 void SurfaceNames::write_definitions(TextWriter& out) const {
-  for (const auto* entry : order_) {
+  for (const Named& entry : order_) {
     out.word("surface");
-    out.word(entry->second);
-    out.word(entry->first);
+    out.word(*entry.name);
+    write_components(out, *entry.surface);
     out.end_line();
   }
 }

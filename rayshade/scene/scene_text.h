@@ -21,14 +21,23 @@ namespace rayshade {
 /// dashes.
 bool is_language_name(std::string_view text);
 
+/// How numbers are written.
+enum class NumberForm : std::uint8_t {
+  kDecimal,
+  /// A zero byte and the eight bytes of the double, the lowest first; all NaNs alike. Two texts in this form
+  /// are equal exactly where their decimal forms are, and it takes a fraction of the time: for hashing.
+  kBits,
+};
+
 /// Appends words and numbers to a text, one blank between them.
 class TextWriter {
  public:
-  TextWriter() = default;
+  explicit TextWriter(NumberForm form = NumberForm::kDecimal) : form_(form) {}
   /// Hands the text over, and forgets it, at the first line end after every `piece` bytes: for who needs it
   /// only once.
-  TextWriter(std::size_t piece, std::function<void(const std::string&)> take)
-      : piece_(piece), take_(std::move(take)) {}
+  TextWriter(NumberForm form, std::size_t piece, std::function<void(const std::string&)> take)
+      : form_(form), piece_(piece), take_(std::move(take)) {}
+  NumberForm form() const { return form_; }
   void word(std::string_view text);
   void number(double value);
   void integer(std::int64_t value);
@@ -46,12 +55,14 @@ class TextWriter {
 
  private:
   void separate();
+  NumberForm form_;
   std::string text_;
   std::size_t piece_ = 0;
   std::function<void(const std::string&)> take_;
 };
 
-/// Names for surfaces of equal value, numbered in the order of first use.
+/// Names for surfaces of equal value, numbered in the order of first use. The surfaces must outlive it and
+/// stay where they are.
 class SurfaceNames {
  public:
   const std::string& name(const Surface& surface);
@@ -59,8 +70,13 @@ class SurfaceNames {
   void write_definitions(TextWriter& out) const;
 
  private:
-  std::unordered_map<std::string, std::string> names_;  // components as text -> name
-  std::vector<const std::pair<const std::string, std::string>*> order_;
+  struct Named {
+    const Surface* surface;  // the first of its value
+    const std::string* name;
+  };
+  std::unordered_map<std::string, std::string> names_;                 // components in bits -> name
+  std::unordered_map<const Surface*, const std::string*> by_address_;  // those asked for before
+  std::vector<Named> order_;
 };
 
 /// Writes everything that is set, one line each.

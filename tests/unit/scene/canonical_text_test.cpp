@@ -3,8 +3,11 @@
 // parser.
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "rayshade/scene/scene.h"
 #include "rayshade/scene/scene_text.h"
@@ -360,6 +363,47 @@ TEST(SceneHashTest, TellsScenesApart) {
   EXPECT_EQ(scene_hash(a.scene).size(), 32u);
   EXPECT_EQ(scene_hash(a.scene), scene_hash(b.scene));
   EXPECT_NE(scene_hash(a.scene), scene_hash(c.scene));
+}
+
+// The hash walks the scene in another form than the text; the two must tell the same scenes apart.
+TEST(SceneHashTest, IsEqualExactlyWhereTheTextIs) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
+                   kInfinity = std::numeric_limits<double>::infinity();
+  const auto payload = std::bit_cast<double>(std::bit_cast<std::uint64_t>(kNan) | 5);
+  std::vector<Scene> scenes;
+  for (const double value : {0.0, -0.0, 1.0, std::nextafter(1.0, 2.0), 10.0, 32.0, 0x1p-1074, kInfinity,
+                             -kInfinity, kNan, -kNan, payload}) {
+    Builder sphere, surface, transform, light;
+    sphere.scene.world = {sphere.sphere(value)};
+    surface.scene.world = {surface.sphere(1, surface.surface(value)), surface.sphere(1, surface.surface(1)),
+                           surface.sphere(1, surface.surface(value))};
+    transform.scene.world = {transform.sphere(1)};
+    TransformList list;
+    Affine map;
+    map.rows[0].x = value;
+    list.append(map);
+    transform.transform(transform.scene.world[0], list);
+    light.scene.lights.push_back(default_light());
+    light.scene.lights[0].position.x = value;
+    for (Builder* b : {&sphere, &surface, &transform, &light}) scenes.push_back(std::move(b->scene));
+  }
+  // Equal values of surfaces that stand apart, and what words alone tell apart.
+  for (const char* name : {"a", "b", "a b", "a 1"}) {
+    Builder b;
+    b.scene.world = {b.sphere(1, b.surface(1)), b.sphere(1, b.surface(1)), b.sphere(1, b.surface(1))};
+    b.scene.settings.output = name;
+    scenes.push_back(std::move(b.scene));
+  }
+  int equal = 0;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool same = canonical_text(scenes[i]) == canonical_text(scenes[j]);
+      EXPECT_EQ(scene_hash(scenes[i]) == scene_hash(scenes[j]), same)
+          << canonical_text(scenes[i]) << canonical_text(scenes[j]);
+      equal += same;
+    }
+  }
+  EXPECT_GE(equal, 4 * 3);  // the NaNs of each kind
 }
 
 TEST(SceneTest, CountsInstancesFully) {
