@@ -36,6 +36,25 @@ double edge_function_exactly(double ax, double ay, double bx, double by) {
   return product_difference(std::ldexp(ax, sa), std::ldexp(by, sb), std::ldexp(ay, sa), std::ldexp(bx, sb));
 }
 
+double kept_within_box(const Vec3 (&p)[3], const Ray& ray, double t) {
+  double entry = -kFar, exit = kFar, size = max_abs(ray.origin);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lo = std::min(std::min(p[0][axis], p[1][axis]), p[2][axis]),
+                 hi = std::max(std::max(p[0][axis], p[1][axis]), p[2][axis]);
+    size = std::max(size, std::max(std::fabs(lo), std::fabs(hi)));
+    const double d = ray.direction[axis];
+    if (d == 0) continue;
+    const double a = (lo - ray.origin[axis]) / d, b = (hi - ray.origin[axis]) / d;
+    entry = std::max(entry, std::min(a, b));
+    exit = std::min(exit, std::max(a, b));
+  }
+  // Not for the sake of the last bits: those belong to the plane.
+  const double tolerance = 16 * std::numeric_limits<double>::epsilon() * size / max_abs(ray.direction);
+  if (t > exit + tolerance) return exit;
+  if (t < entry - tolerance) return entry;
+  return t;
+}
+
 Vec3 Triangle::geometric_normal() const {
   const Vec3 g = normalize(cross_product());
   return negated_ ? -g : g;
