@@ -2,7 +2,6 @@
 #include "rayshade/geometry/class_tracer.h"
 
 #include <array>
-#include <chrono>
 #include <cmath>
 
 #include "rayshade/geometry/pack_tracer.h"
@@ -108,33 +107,18 @@ template <class Query, class Answer>
 void ClassTracer::choose(std::span<const Query> queries, std::span<Answer> answers,
                          std::span<const std::uint32_t> which, fas::ThreadState& state, Batch& batch,
                          TraceScratch& scratch) const {
-  using Way = fas::Choice::Way;
-  const Way way = !choice_ ? Way::kHierarchy : always_ ? Way::kTree : choice_->next(which.size());
-  if (way == Way::kHierarchy) {
-    ask_hierarchy(queries, answers, which, scratch);
-    return;
-  }
-  if (way == Way::kTree) {
-    choice_->built(which.size(), ask_tree(queries, answers, which, state, batch, scratch));
-    return;
-  }
-  const std::size_t half = which.size() / 2;
-  for (std::vector<std::uint32_t>& places : batch.halves) places.clear();
-  for (std::size_t i = 0; i < which.size(); ++i) batch.halves[i % 2].push_back(which[i]);
-  using Clock = std::chrono::steady_clock;
-  std::uint64_t building = 0;
-  double tree_ns = 0, hierarchy_ns = 0;
-  const bool hierarchy_first = choice_->hierarchy_first();
-  for (const bool tree : {!hierarchy_first, hierarchy_first}) {
-    const Clock::time_point start = Clock::now();
-    if (tree)
-      building = ask_tree(queries, answers, {batch.halves[0]}, state, batch, scratch);
-    else
-      ask_hierarchy(queries, answers, {batch.halves[1]}, scratch);
-    (tree ? tree_ns : hierarchy_ns) = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
-  }
-  choice_->built(half, building);
-  choice_->compared(half, tree_ns, hierarchy_ns, static_cast<double>(building));
+  const auto tree = [&](std::span<const std::uint32_t> some) {
+    return ask_tree(queries, answers, some, state, batch, scratch);
+  };
+  const auto hierarchy = [&](std::span<const std::uint32_t> some) {
+    ask_hierarchy(queries, answers, some, scratch);
+  };
+  if (!choice_)
+    hierarchy(which);
+  else if (always_)
+    tree(which);
+  else
+    fas::ask_by_choice(*choice_, which, batch.halves, tree, hierarchy);
 }
 
 template <class Query, class Answer>

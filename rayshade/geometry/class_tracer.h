@@ -9,6 +9,7 @@
 
 #include "fas/batch.h"
 #include "fas/beam_tree.h"
+#include "fas/choice.h"
 #include "rayshade/geometry/intersector.h"
 
 namespace rayshade {
