@@ -192,6 +192,7 @@ void ask_world(const CompiledScene& scene, const OcclusionQuery& query, Occlusio
                TraceScratch& scratch) {
   TraceContext context(scene, scratch);
   answer.occluded = group_occludes(context, 0, query.ray, query.lo, query.hi, query.mask);
+  answer.others = query.mask != kAnyOpacity;  // who knows
   answer.tests = context.tests;
   answer.bounds_tests = context.bounds_tests;
 }

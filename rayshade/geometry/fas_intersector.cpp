@@ -52,7 +52,12 @@ class FasIntersector final : public Intersector {
     Batch& batch = batch_of(scratch);
     for (std::size_t first = 0; first < queries.size(); first += kMostAtOnce) {
       const std::size_t count = std::min(kMostAtOnce, queries.size() - first);
-      nearest_batch(queries.subspan(first, count), answers.subspan(first, count), state, batch, scratch);
+      const auto some = queries.subspan(first, count);
+      // Spans are of one kind, or nearly so: what is in the wrong one is answered by the world.
+      if (some[0].kind == RayKind::kShadow)
+        walk_batch(some, answers.subspan(first, count), state, batch, scratch);
+      else
+        nearest_batch(some, answers.subspan(first, count), state, batch, scratch);
     }
   }
 
@@ -174,14 +179,17 @@ class FasIntersector final : public Intersector {
       tracer.improve(world_.first + k, tracer.pack().all());
   }
 
-  void occluded_batch(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
-                      fas::ThreadState& state, Batch& batch, TraceScratch& scratch) const {
+  /// Sorts queries toward lights by leaf. Those that no tree takes are answered by the world at once; those
+  /// in whose way nothing bounded is stay in batch.outside, whose size is returned.
+  template <class Query, class Answer>
+  std::uint32_t sort_toward_lights(std::span<const Query> queries, std::span<Answer> answers,
+                                   fas::ThreadState& state, Batch& batch, TraceScratch& scratch) const {
     batch.groups.clear();
     batch.resize(queries.size());
     const auto count = static_cast<std::uint32_t>(queries.size());
     std::uint32_t outside = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const OcclusionQuery& query = queries[i];
+      const Query& query = queries[i];
       fas::HyperTree* tree = query.light < lights_.size() ? lights_[query.light].get() : nullptr;
       const Vec3 &o = query.ray.origin, &d = query.ray.direction;
       const double origin[3] = {o.x, o.y, o.z}, direction[3] = {d.x, d.y, d.z};
@@ -203,21 +211,40 @@ class FasIntersector final : public Intersector {
           if (world_.unbounded > 0)
             batch.outside[outside++] = i;
           else
-            answers[i] = {};
+            answer_nothing(answers[i]);
           break;
         case fas::HyperTree::Place::kLeaf:
-          batch.depth[i] = place.depth;
+          batch.depth[i] = depth_at(*tree, place, direction, query.lo);
           batch.groups.add(*tree, leaf, place, i, count);
           break;
       }
     }
-    PackTracer tracer(scene_, scratch);
+    return outside;
+  }
+
+  /// Depth of the point at t = `lo` on a ray toward the light: what is farther from the light than that is of
+  /// no interest. (The rounding of this sum of two is well within what quantised() allows for.)
+  static double depth_at(const fas::HyperTree& tree, const fas::HyperTree::Query& place, const double* d,
+                         double lo) {
+    if (tree.view().kind == fas::View::Kind::kParallel) return place.depth - lo;
+    return place.depth - lo * std::fabs(d[place.face >> 1]);
+  }
+
+  static void answer_nothing(OcclusionAnswer& answer) { answer = {}; }
+  static void answer_nothing(NearestAnswer& answer) {
+    answer.found = false;
+    answer.tests = answer.bounds_tests = 0;
+  }
+
+  /// Calls `answer(places, count, group, probe, depths)` for packs of queries that share a leaf, and
+  /// `unbounded(places, count)` for those in whose way nothing bounded is.
+  template <class Pack, class Unbounded>
+  static void each_pack(const Batch& batch, std::uint32_t outside, const Unbounded& unbounded,
+                        const Pack& pack) {
     for (std::uint32_t first = 0; first < outside; first += RayPack::kMost) {
-      const int n = static_cast<int>(std::min<std::uint32_t>(RayPack::kMost, outside - first));
-      tracer.load(queries, batch.outside.data() + first, n);
-      tracer.answer_occluded(answers, occluded_by_unbounded(tracer));
+      unbounded(batch.outside.data() + first,
+                static_cast<int>(std::min<std::uint32_t>(RayPack::kMost, outside - first)));
     }
-    const LeafId bounded = world_.first + world_.unbounded;
     for (const fas::LeafGroups::Group& group : batch.groups.groups()) {
       std::uint32_t place = group.first, left = group.count;
       while (left > 0) {
@@ -232,26 +259,71 @@ class FasIntersector final : public Intersector {
           probe.v[k] = batch.v[place];
           ++probe.count;
         }
-        tracer.load(queries, places.data(), probe.count);
-        const RayPack::Mask stopped = occluded_by_unbounded(tracer);
-        const RayPack::Mask by_leaf = fas::occluded_in_group(
-            *group.tree, state, *group.leaf, group.any, probe, depths.data(),
-            [&](std::uint32_t candidate, std::uint64_t mask) {
-              return tracer.occlude(bounded + candidate, mask & ~stopped) | (mask & stopped);
-            });
-        tracer.count_bounds(tracer.pack().all());
-        tracer.answer_occluded(answers, stopped | by_leaf);
+        pack(group, probe, places.data(), depths.data());
       }
     }
   }
 
-  RayPack::Mask occluded_by_unbounded(PackTracer& tracer) const {
-    RayPack::Mask stopped = 0;
-    for (std::uint32_t k = 0; k < world_.unbounded; ++k) {
-      const RayPack::Mask open = tracer.pack().all() & ~stopped;
-      if (open != 0) stopped |= tracer.occlude(world_.first + k, open);
-    }
-    return stopped;
+  void occluded_batch(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
+                      fas::ThreadState& state, Batch& batch, TraceScratch& scratch) const {
+    const std::uint32_t outside = sort_toward_lights(queries, answers, state, batch, scratch);
+    PackTracer tracer(scene_, scratch);
+    const LeafId bounded = world_.first + world_.unbounded;
+    each_pack(
+        batch, outside,
+        [&](const std::uint32_t* places, int n) {
+          tracer.load(queries, places, n);
+          occlude_by_unbounded(tracer);
+          tracer.answer_occluded(answers);
+        },
+        [&](const fas::LeafGroups::Group& group, fas::GroupProbe& probe, const std::uint32_t* places,
+            const double* depths) {
+          tracer.load(queries, places, probe.count);
+          const RayPack::Mask known = occlude_by_unbounded(tracer);
+          fas::occluded_in_group(*group.tree, state, *group.leaf, group.any, probe, depths,
+                                 [&](std::uint32_t candidate, std::uint64_t mask) {
+                                   return tracer.occlude(bounded + candidate, mask & ~known) | (mask & known);
+                                 });
+          tracer.count_bounds(tracer.pack().all());
+          tracer.answer_occluded(answers);
+        });
+  }
+
+  /// Nearest hits of rays toward lights: those of walks through transparent surfaces.
+  void walk_batch(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
+                  fas::ThreadState& state, Batch& batch, TraceScratch& scratch) const {
+    const std::uint32_t outside = sort_toward_lights(queries, answers, state, batch, scratch);
+    PackTracer tracer(scene_, scratch);
+    const LeafId bounded = world_.first + world_.unbounded;
+    each_pack(
+        batch, outside,
+        [&](const std::uint32_t* places, int n) {
+          tracer.load(queries, answers, places, n);
+          improve_by_unbounded(tracer);
+          tracer.answer_nearest();
+        },
+        [&](const fas::LeafGroups::Group& group, fas::GroupProbe& probe, const std::uint32_t* places,
+            const double* depths) {
+          tracer.load(queries, answers, places, probe.count);
+          improve_by_unbounded(tracer);
+          // Candidates are in the order of the light, not of the ray, so that every one is tested.
+          fas::occluded_in_group(*group.tree, state, *group.leaf, group.any, probe, depths,
+                                 [&](std::uint32_t candidate, std::uint64_t mask) {
+                                   tracer.improve(bounded + candidate, mask);
+                                   return RayPack::Mask{0};
+                                 });
+          tracer.count_bounds(tracer.pack().all());
+          tracer.answer_nearest();
+        });
+  }
+
+  /// Returns those whose answer is known by that.
+  RayPack::Mask occlude_by_unbounded(PackTracer& tracer) const {
+    RayPack::Mask known = 0;
+    const RayPack::Mask all = tracer.pack().all();
+    for (std::uint32_t k = 0; k < world_.unbounded && known != all; ++k)
+      known |= tracer.occlude(world_.first + k, all & ~known);
+    return known;
   }
 
   const CompiledScene& scene_;

@@ -405,9 +405,10 @@ void RayTree::answer_shadows(std::span<SampleResult> results) {
 /// `through_all`: so do all, where a question about opaque leaves has not been asked because it would cost as
 /// much.
 void RayTree::follow_transparent(bool through_all, std::span<SampleResult> results) {
-  walks_.resize(shadow_queries_.size());
+  walks_.clear();
   for (std::uint32_t i = 0; i < shadow_queries_.size(); ++i) {
-    Walk& walk = walks_[i];
+    if (!through_all && !shadow_answers_[i].others) continue;
+    Walk& walk = walks_.emplace_back();
     walk.pending = shadow_owner_[i];
     walk.query = i;
     walk.near = shadow_queries_[i].lo;
