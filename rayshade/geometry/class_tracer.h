@@ -80,7 +80,7 @@ class ClassTracer {
                     const Batch& batch, fas::ThreadState& state, PackTracer& tracer) const;
   bool place(const NearestQuery& query, fas::HyperTree::Query& out, double& depth) const;
   bool place(const OcclusionQuery& query, fas::HyperTree::Query& out, double& depth) const;
-  bool place_toward(const Ray& ray, double hi, fas::HyperTree::Query& out, double& depth) const;
+  bool place_toward(const Ray& ray, double lo, double hi, fas::HyperTree::Query& out, double& depth) const;
 
   const CompiledScene& scene_;
   std::unique_ptr<fas::HyperTree> flat_;

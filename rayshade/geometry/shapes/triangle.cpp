@@ -37,22 +37,20 @@ double edge_function_exactly(double ax, double ay, double bx, double by) {
 }
 
 double kept_within_box(const Vec3 (&p)[3], const Ray& ray, double t) {
-  double entry = -kFar, exit = kFar, size = max_abs(ray.origin);
+  double entry = -kFar, exit = kFar;
   for (int axis = 0; axis < 3; ++axis) {
+    const double o = ray.origin[axis], d = ray.direction[axis];
+    if (d == 0) continue;
     const double lo = std::min(std::min(p[0][axis], p[1][axis]), p[2][axis]),
                  hi = std::max(std::max(p[0][axis], p[1][axis]), p[2][axis]);
-    size = std::max(size, std::max(std::fabs(lo), std::fabs(hi)));
-    const double d = ray.direction[axis];
-    if (d == 0) continue;
-    const double a = (lo - ray.origin[axis]) / d, b = (hi - ray.origin[axis]) / d;
-    entry = std::max(entry, std::min(a, b));
-    exit = std::min(exit, std::max(a, b));
+    // A few units of rounding more, so that the last bits stay those of the plane.
+    const double margin = 8 * std::numeric_limits<double>::epsilon() *
+                          std::max(std::fabs(o), std::max(std::fabs(lo), std::fabs(hi))) / std::fabs(d);
+    const double a = (lo - o) / d, b = (hi - o) / d;
+    entry = std::max(entry, std::min(a, b) - margin);
+    exit = std::min(exit, std::max(a, b) + margin);
   }
-  // Not for the sake of the last bits: those belong to the plane.
-  const double tolerance = 16 * std::numeric_limits<double>::epsilon() * size / max_abs(ray.direction);
-  if (t > exit + tolerance) return exit;
-  if (t < entry - tolerance) return entry;
-  return t;
+  return t > exit ? exit : t < entry ? entry : t;
 }
 
 Vec3 Triangle::geometric_normal() const {
