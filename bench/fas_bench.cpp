@@ -3,7 +3,7 @@
 //
 // Records the rays of each scene and replays them through adaptive subdivision, through the hierarchy alone,
 // and through Embree's single rays (fast and robust) and 16-wide packets, in turn within one run, on one
-// thread and in its processor time. Every repetition starts without trees, and building is part of the time. Prints
+// thread and in its processor time. Every repetition starts without trees, and building is part of the time.
 // Prints nanoseconds per ray of each class and ratios; wrong answers of ours end the run.
 //
 // Rays are recorded and replayed in batches, so that memory does not grow with samples; the trees of a
