@@ -14,6 +14,12 @@ namespace rayshade {
 
 enum class RayKind : std::uint8_t { kEye, kReflected, kTransmitted, kShadow };
 
+/// What the kind is called in reports.
+constexpr const char* name_of(RayKind kind) {
+  constexpr const char* kNames[] = {"eye ray", "reflected ray", "transmitted ray", "shadow ray"};
+  return kNames[static_cast<int>(kind)];
+}
+
 struct NearestQuery {
   Ray ray;
   double lo = 0, hi = kFar;

@@ -140,6 +140,7 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider&
 
   statistics_.compile = compiled_->counts;
   statistics_.threads = options.threads;
+  statistics_.verify_share = options.verify;
   statistics_.without_motion = !compiled_->has_motion;
   statistics_.without_lens = !camera_->has_lens();
   statistics_.without_csg = !compiled_->has_csg;
@@ -178,6 +179,15 @@ void Renderer::make_intersector() {
       break;
   }
   if (options_.wrap) intersector_ = options_.wrap(*compiled_, std::move(intersector_));
+  if (options_.verify > 0) {
+    VerifyOptions verify{options_.verify, {}, options_.report_difference};
+    for (std::size_t i = 0; i < frame_.shading.lights.size(); ++i)
+      verify.light_names.push_back(light_name(frame_.shading.lights, i));
+    auto verifier =
+        std::make_unique<VerifyingIntersector>(*compiled_, std::move(intersector_), std::move(verify));
+    verifier_ = verifier.get();
+    intersector_ = std::move(verifier);
+  }
 }
 
 void Renderer::prepare_frame(int frame) {
@@ -258,6 +268,7 @@ bool Renderer::render_frame(int frame, FrameBuffer& picture, const std::atomic<b
     }
   }
   statistics_.render_seconds += seconds_since(start);
+  if (verifier_) statistics_.verify = verifier_->counts();
   if (crew.error) located([&] { std::rethrow_exception(crew.error); });
   const PixelStatistics seen = picture.statistics();
   statistics_.nan_pixels += seen.not_a_number;
@@ -274,6 +285,7 @@ std::string Renderer::explain(int frame, int x, int y) {
   renderer.tree().scratch().brute_force = brute_force();
   ExplainText text(frame_);
   located([&] { renderer.observe(x, y, text); });
+  if (verifier_) statistics_.verify = verifier_->counts();
   return text.text();
 }
 

@@ -30,6 +30,9 @@ struct RenderOptions {
   /// Puts an intersector of one's own around (or in place of) the one made: to record or to check its
   /// answers.
   std::function<std::unique_ptr<Intersector>(const CompiledScene&, std::unique_ptr<Intersector>)> wrap;
+  /// Share of all queries that brute force is asked again (VerifyingIntersector); 0: none, at no cost.
+  double verify = 0;
+  std::function<void(const std::string&)> report_difference;  ///< VerifyOptions::report
   bool layers = false;
   bool cost = false;
   bool sample_map = false;  ///< alpha tells which pixels are fully sampled
@@ -79,6 +82,7 @@ class Renderer {
   std::unique_ptr<CompiledScene> compiled_;
   std::unique_ptr<CompiledTextures> textures_;
   std::unique_ptr<Intersector> intersector_;
+  const VerifyingIntersector* verifier_ = nullptr;  ///< intersector_, if that is one
   std::unique_ptr<Camera> camera_;
   std::unique_ptr<SampleGrid> grid_;
   FrameScene frame_;

@@ -7,6 +7,7 @@
 
 #include "rayshade/geometry/compiled_scene.h"
 #include "rayshade/geometry/trace.h"
+#include "rayshade/geometry/verify.h"
 #include "rayshade/shading/counts.h"
 
 namespace rayshade {
@@ -30,6 +31,8 @@ struct RenderStatistics {
   ShadingCounts shading;
   SamplingCounts sampling;
   CompileCounts compile;
+  VerifyCounts verify;
+  double verify_share = 0;  ///< of queries that were asked again of brute force
   std::uint64_t nan_pixels = 0, negative_pixels = 0;
   std::uint64_t peak_tree_nodes = 0;
   double compile_seconds = 0;  ///< wall clock
