@@ -328,6 +328,14 @@ std::vector<OptionSpec> make_table() {
            throw UsageError("--fas-split: '" + v[0] + "' is neither adaptive nor always");
        },
        {"adaptive", "always"}});
+  t.push_back(
+      {0,
+       "verify",
+       {"SHARE"},
+       kRun,
+       "Ask brute force again about this share of all rays, from 0 to 1 or from 0% to 100%, while rendering. "
+       "Answers that differ are counted, the first ten printed, and the exit status is 4.",
+       [](Options& o, Values v) { o.verify = parse_share(v[0], "--verify"); }});
   t.push_back({0,
                "block",
                {"N"},

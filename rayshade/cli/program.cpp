@@ -61,7 +61,8 @@ void write_text(const std::string& name, const std::string& text) {
 /// One run of the program, step by step; each step may end it.
 class Run {
  public:
-  explicit Run(Options options) : options_(std::move(options)) {}
+  Run(Options options, decltype(RenderOptions::wrap) wrap)
+      : options_(std::move(options)), wrap_(std::move(wrap)) {}
 
   int go() {
     open_report();
@@ -149,6 +150,9 @@ class Run {
     out.intersector = options_.intersector;
     out.fas_memory = options_.fas_memory;
     out.fas_split = options_.fas_split;
+    out.wrap = wrap_;
+    out.verify = options_.verify;
+    out.report_difference = [](const std::string& text) { fmt::print(stderr, "rayshade: error: {}", text); };
     out.layers = options_.layers.has_value();
     out.cost = options_.cost_map.has_value();
     out.sample_map = options_.sample_map;
@@ -163,7 +167,7 @@ class Run {
     }
     write_text(options_.output.value_or("-"),
                renderer.explain(settings_.first_frame, options_.explain_x, options_.explain_y));
-    return kComplete;
+    return verified(renderer, kComplete);
   }
 
   /// The picture's memory against what may be taken, before anything large is allocated.
@@ -237,8 +241,18 @@ class Run {
       }
     }
     if (complete || renderer.statistics().frames > 0) output.finish();
-    report(renderer, complete ? "complete" : "stopped");
-    return complete ? kComplete : kStopped;
+    const bool differs = renderer.statistics().verify.differing > 0;
+    report(renderer, differs ? "differs" : complete ? "complete" : "stopped");
+    return verified(renderer, complete ? kComplete : kStopped);
+  }
+
+  /// The exit code, after a last word about what --verify found.
+  static ExitCode verified(const Renderer& renderer, ExitCode code) {
+    const VerifyCounts& found = renderer.statistics().verify;
+    if (found.differing == 0) return code;
+    complain(fmt::format("error: of {} rays verified, {} have another answer than brute force gives",
+                         found.rays(), found.differing));
+    return kDiffers;
   }
 
   void report(const Renderer& renderer, const char* outcome) {
@@ -254,6 +268,7 @@ class Run {
   }
 
   Options options_;
+  decltype(RenderOptions::wrap) wrap_;
   FileProvider provider_;
   Scene scene_;
   RenderSettings settings_;
@@ -276,7 +291,7 @@ int guarded(Run& run) {
 
 }  // namespace
 
-int run_program(const std::vector<std::string>& arguments) {
+int run_program(const std::vector<std::string>& arguments, const decltype(RenderOptions::wrap)& wrap) {
   try {
     const Options options = parse_options(arguments);
     switch (options.action) {
@@ -295,7 +310,7 @@ int run_program(const std::vector<std::string>& arguments) {
       default:
         break;
     }
-    Run run(options);
+    Run run(options, wrap);
     return guarded(run);
   } catch (const UsageError& error) {
     complain(error.what());

@@ -116,6 +116,36 @@ TEST_F(ProgramTest, SameSceneSameBytes) {
   EXPECT_EQ(read_file(path("a.png")), read_file(path("b.png")));
 }
 
+TEST_F(ProgramTest, VerifyingScenesFindsNothingAndChangesNothing) {
+  const fs::path scenes = std::string(SOURCE_DIR) + "/scenes";
+  for (const std::string name : {"hero", "fern", "csg", "motion", "focus", "glass", "shadows", "spots"}) {
+    SCOPED_TRACE(name);
+    std::string pictures[2];
+    for (const int verify : {0, 1}) {
+      const std::string picture = path(name + ".ppm").string();
+      const Outcome done = run(scenes, "-q -R 40 30 -S 2 --stats " + path("s.json").string() + " --verify " +
+                                           std::to_string(verify) + " -O " + picture + " " + name + ".ray");
+      ASSERT_EQ(done.status, 0) << done.err;
+      EXPECT_EQ(done.err, "");
+      pictures[verify] = read_file(picture);
+    }
+    EXPECT_EQ(pictures[0], pictures[1]);
+    const auto stats = nlohmann::json::parse(read_file(path("s.json")));
+    EXPECT_EQ(stats["verification"]["nearest"], stats["rays"]["nearest_queries"]);
+    EXPECT_EQ(stats["verification"]["occlusion"], stats["rays"]["occlusion_queries"]);
+    EXPECT_EQ(stats["verification"]["differing"], 0);
+  }
+}
+
+TEST_F(ProgramTest, SharesThatAreNoneAreRefused) {
+  for (const char* share : {"50", "-1", "101%", "nan", "few", "5%%", "''"}) {
+    const Outcome bad = go("-O a.png --verify " + std::string(share), kSmall);
+    EXPECT_EQ(bad.status, 2) << share;
+    EXPECT_THAT(bad.err, HasSubstr("--verify: ")) << share;
+    EXPECT_THAT(bad.err, HasSubstr("not a share from 0 to 1")) << share;
+  }
+}
+
 TEST_F(ProgramTest, StatisticsAreJson) {
   ASSERT_EQ(go("-q --stats s.json -O a.png", kSmall).status, 0);
   const auto stats = nlohmann::json::parse(read_file(path("s.json")));
