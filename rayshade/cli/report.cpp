@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "rayshade/cli/class_report.h"
 #include "rayshade/cli/json.h"
 
 namespace rayshade {
@@ -124,6 +125,7 @@ std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bo
       if (is_unused) unused += fmt::format("{}{}", unused.empty() ? "" : ", ", name);
     }
     if (!unused.empty()) row("Not used by the scene, never run:", unused);
+    out += classes_text(s);
     count("Samples in halos of blocks:", s.sampling.halo_samples);
     row("Leaves, shared groups:", fmt::format("{}, {}", s.compile.leaves, s.compile.shared_groups));
     row("Reading, compiling, rendering:",
@@ -179,6 +181,7 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
         .end_object();
   }
   j.end_object();
+  write_classes(s, j);
   if (s.verify_share > 0) {
     j.begin_object("verification");
     j.value("share", s.verify_share).value("nearest", s.verify.nearest);

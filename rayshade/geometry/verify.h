@@ -53,6 +53,10 @@ class VerifyingIntersector final : public Intersector {
                 TraceScratch& scratch) const override;
   std::size_t preferred_span() const override { return inner_->preferred_span(); }
   void scene_changed() override;
+  void report(const TraceScratch& scratch, IntersectorReport& into) const override {
+    inner_->report(scratch, into);
+  }
+  const fas::HyperTree* eye_tree() const override { return inner_->eye_tree(); }
 
   /// Of all queries so far. No thread may be tracing.
   VerifyCounts counts() const;

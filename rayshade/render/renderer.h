@@ -69,6 +69,9 @@ class Renderer {
 
   const RenderStatistics& statistics() const { return statistics_; }
   const CompiledScene& compiled() const { return *compiled_; }
+  const Camera& camera() const { return *camera_; }
+  /// The tree of eye rays as it is now; null where there is none. Not while a frame is rendered.
+  const fas::HyperTree* eye_tree() const { return intersector_->eye_tree(); }
   /// The classes of rays of this scene, as make_fas takes them.
   FasOptions fas_options() const;
 

@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "rayshade/geometry/compiled_scene.h"
+#include "rayshade/geometry/intersector_report.h"
 #include "rayshade/geometry/trace.h"
 #include "rayshade/geometry/verify.h"
 #include "rayshade/shading/counts.h"
@@ -31,6 +33,8 @@ struct RenderStatistics {
   ShadingCounts shading;
   SamplingCounts sampling;
   CompileCounts compile;
+  IntersectorReport intersector;
+  std::vector<std::string> light_names;  ///< of ClassReport::light
   VerifyCounts verify;
   double verify_share = 0;  ///< of queries that were asked again of brute force
   std::uint64_t nan_pixels = 0, negative_pixels = 0;
