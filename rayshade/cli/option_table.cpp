@@ -392,15 +392,27 @@ std::vector<OptionSpec> make_table() {
                "Write all statistics to FILE as JSON.",
                [](Options& o, Values v) { o.stats_file = v[0]; },
                {"FILE"}});
-  t.push_back(
-      {0,
-       "cost-map",
-       {"FILE"},
-       kReport,
-       "Write intersection tests, box tests and microseconds of each pixel as float pictures FILE.tests.pfm, "
-       "FILE.bounds_tests.pfm and FILE.microseconds.pfm, and each in false colours as a PNG beside it.",
-       [](Options& o, Values v) { o.cost_map = v[0]; },
-       {"FILE"}});
+  t.push_back({0,
+               "cost-map",
+               {"FILE"},
+               kReport,
+               "Write intersection tests, box tests, microseconds, rays, and rays answered by trees of each "
+               "pixel as float "
+               "pictures FILE.tests.pfm, FILE.bounds_tests.pfm, FILE.microseconds.pfm, FILE.rays.pfm and "
+               "FILE.tree_rays.pfm, "
+               "and each in false colours as a PNG beside it.",
+               [](Options& o, Values v) { o.cost_map = v[0]; },
+               {"FILE"}});
+  t.push_back({0,
+               "fas-dump",
+               {"FILE.svg"},
+               kReport,
+               "Draw the tree of eye rays over the picture: every cell of its subdivision, shaded by the "
+               "number of objects to "
+               "be tested there. Refused where there is no such tree: with a lens, few objects, or another "
+               "intersector.",
+               [](Options& o, Values v) { o.fas_dump = v[0]; },
+               {"FILE"}});
   t.push_back({0,
                "explain",
                {"X", "Y"},

@@ -19,6 +19,7 @@
 #include "rayshade/cli/progress.h"
 #include "rayshade/cli/report.h"
 #include "rayshade/cli/signals.h"
+#include "rayshade/cli/tree_svg.h"
 #include "rayshade/lang/parse.h"
 #include "rayshade/render/renderer.h"
 #include "rayshade/scene/provider.h"
@@ -203,6 +204,7 @@ class Run {
     const FrameBufferOptions buffer = output.frame_buffer_options(
         check_memory(output.frame_buffer_options(options_.memory_limit.value_or(available_memory()))));
     Renderer renderer(scene_, settings_, provider_, render_options());
+    if (options_.fas_dump && !renderer.eye_tree()) throw UsageError("--fas-dump: " + why_no_eye_tree());
     run_.scene = scene_name();
     run_.version = RAYSHADE_VERSION;
     run_.scene_hash = scene_hash(scene_);
@@ -234,6 +236,8 @@ class Run {
       progress.finish();
       if (complete) {
         output.write_frame(picture, frame);
+        if (options_.fas_dump)
+          write_text(output.file_name(*options_.fas_dump, frame), tree_drawing(renderer, picture, frame));
       } else {
         const std::string partial = output.write_partial(picture, frame);
         complain(partial.empty() ? "stopped; no partial picture is kept on standard output"
@@ -244,6 +248,30 @@ class Run {
     const bool differs = renderer.statistics().verify.differing > 0;
     report(renderer, differs ? "differs" : complete ? "complete" : "stopped");
     return verified(renderer, complete ? kComplete : kStopped);
+  }
+
+  std::string why_no_eye_tree() const {
+    if (options_.intersector != IntersectorKind::kFas)
+      return "there is no tree of eye rays to draw: --intersector fas makes one";
+    if (settings_.aperture > 0)
+      return "there is no tree of eye rays to draw: they do not start at one point, because the camera has "
+             "an aperture";
+    return "there is no tree of eye rays to draw: the scene has so few objects that all are tested";
+  }
+
+  std::string tree_drawing(const Renderer& renderer, const FrameBuffer& picture, int frame) const {
+    TreeDrawing drawing;
+    drawing.width = settings_.window_width();
+    drawing.height = settings_.window_height();
+    drawing.title = fmt::format("Tree of eye rays of {}, frame {}", scene_name(), frame);
+    for (const ClassReport& c : renderer.statistics().intersector.classes) {
+      if (c.rays != ClassReport::Rays::kEye || c.queries() == 0) continue;
+      drawing.note =
+          fmt::format("Of {} eye rays so far, {:.1f} % were answered in the tree.", c.queries(),
+                      100 * static_cast<double>(c.in_tree.rays) / static_cast<double>(c.queries()));
+    }
+    return tree_svg(tree_cells(*renderer.eye_tree(), renderer.camera(), settings_), drawing,
+                    embeddable_png(picture));
   }
 
   /// The exit code, after a last word about what --verify found.
