@@ -61,6 +61,14 @@ class Plane {
     u = d[axis_u_] * inverse;
     v = d[axis_v_] * inverse;
   }
+  /// A direction through (u, v) of a point view: what of_direction() maps there.
+  Point direction(double u, double v) const {
+    Point d{};
+    d[axis_] = sign_;
+    d[axis_u_] = u;
+    d[axis_v_] = v;
+    return d;
+  }
   const View& view() const { return view_; }
 
  private:

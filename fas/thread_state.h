@@ -42,6 +42,13 @@ struct ThreadState {
     if (tree >= beam_caches.size()) beam_caches.resize(tree + 1);
     return beam_caches[tree];
   }
+  /// Queries of this thread that trees have answered.
+  std::uint64_t rays() const {
+    std::uint64_t sum = 0;
+    for (const TreeCache& cache : caches) sum += cache.counts.rays;
+    for (const BeamCache& cache : beam_caches) sum += cache.counts.rays;
+    return sum;
+  }
   Arena arena;
   std::vector<TreeCache> caches;
   std::vector<BeamCache> beam_caches;

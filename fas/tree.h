@@ -185,7 +185,8 @@ void HyperTree::each_leaf(const Visit& visit) const {
   };
   for (int face = 0; face < view_.faces(); ++face) {
     const Root& root = roots_[static_cast<std::size_t>(face)];
-    if (root.state.load(std::memory_order_acquire) != 2) continue;
+    // A face that sees nothing has no node.
+    if (root.state.load(std::memory_order_acquire) != 2 || !root.node) continue;
     visit_leaves(root, *root.node, {0, 0, 0}, face, call, const_cast<Visit*>(&visit));
   }
 }

@@ -230,6 +230,19 @@ double parse_real(const std::string& text, const std::string& option) {
   return value;
 }
 
+double parse_share(const std::string& text, const std::string& option) {
+  double value = 0;
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  const std::string suffix(end, last);
+  if (suffix == "%") value /= 100;
+  if (error != std::errc{} || !(suffix.empty() || suffix == "%") || !(value >= 0 && value <= 1)) {
+    throw UsageError(fmt::format(
+        "{}: '{}' is not a share from 0 to 1, such as .05, or from 0% to 100%, such as 5%", option, text));
+  }
+  return value;
+}
+
 std::uint64_t parse_bytes(const std::string& text, const std::string& option) {
   double value = 0;
   const char* last = text.data() + text.size();

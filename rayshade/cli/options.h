@@ -48,9 +48,10 @@ struct Options {
   int threads = 0;  ///< 0: what the process may use
   int block = 0;    ///< side of a block; 0: chosen
   IntersectorKind intersector = IntersectorKind::kFas;
-  std::optional<std::string> stats_file, cost_map, layers;
+  std::optional<std::string> stats_file, cost_map, layers, fas_dump;
   std::uint64_t fas_memory = 0;  ///< bytes; 0: a quarter of what the process may use
   fas::Split fas_split = fas::Split::kAdaptive;
+  double verify = 0;                          ///< share of queries that brute force is asked again
   std::optional<std::uint64_t> memory_limit;  ///< bytes; unset: what the machine has
   int explain_x = 0, explain_y = 0;
 };
@@ -87,6 +88,8 @@ std::string bash_completion();
 /// A whole decimal integer or real; throws UsageError naming the option where it is none or out of range.
 int parse_int(const std::string& text, const std::string& option, int lowest, int highest);
 double parse_real(const std::string& text, const std::string& option);
+/// A share from 0 to 1, written so or as a percentage with %.
+double parse_share(const std::string& text, const std::string& option);
 /// Bytes with an optional suffix K, M, G or T (powers of 1024).
 std::uint64_t parse_bytes(const std::string& text, const std::string& option);
 

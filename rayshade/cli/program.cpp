@@ -19,6 +19,7 @@
 #include "rayshade/cli/progress.h"
 #include "rayshade/cli/report.h"
 #include "rayshade/cli/signals.h"
+#include "rayshade/cli/tree_svg.h"
 #include "rayshade/lang/parse.h"
 #include "rayshade/render/renderer.h"
 #include "rayshade/scene/provider.h"
@@ -61,7 +62,8 @@ void write_text(const std::string& name, const std::string& text) {
 /// One run of the program, step by step; each step may end it.
 class Run {
  public:
-  explicit Run(Options options) : options_(std::move(options)) {}
+  Run(Options options, decltype(RenderOptions::wrap) wrap)
+      : options_(std::move(options)), wrap_(std::move(wrap)) {}
 
   int go() {
     open_report();
@@ -149,6 +151,9 @@ class Run {
     out.intersector = options_.intersector;
     out.fas_memory = options_.fas_memory;
     out.fas_split = options_.fas_split;
+    out.wrap = wrap_;
+    out.verify = options_.verify;
+    out.report_difference = [](const std::string& text) { fmt::print(stderr, "rayshade: error: {}", text); };
     out.layers = options_.layers.has_value();
     out.cost = options_.cost_map.has_value();
     out.sample_map = options_.sample_map;
@@ -163,7 +168,7 @@ class Run {
     }
     write_text(options_.output.value_or("-"),
                renderer.explain(settings_.first_frame, options_.explain_x, options_.explain_y));
-    return kComplete;
+    return verified(renderer, kComplete);
   }
 
   /// The picture's memory against what may be taken, before anything large is allocated.
@@ -199,6 +204,7 @@ class Run {
     const FrameBufferOptions buffer = output.frame_buffer_options(
         check_memory(output.frame_buffer_options(options_.memory_limit.value_or(available_memory()))));
     Renderer renderer(scene_, settings_, provider_, render_options());
+    if (options_.fas_dump && !renderer.eye_tree()) throw UsageError("--fas-dump: " + why_no_eye_tree());
     run_.scene = scene_name();
     run_.version = RAYSHADE_VERSION;
     run_.scene_hash = scene_hash(scene_);
@@ -230,6 +236,8 @@ class Run {
       progress.finish();
       if (complete) {
         output.write_frame(picture, frame);
+        if (options_.fas_dump)
+          write_text(output.file_name(*options_.fas_dump, frame), tree_drawing(renderer, picture, frame));
       } else {
         const std::string partial = output.write_partial(picture, frame);
         complain(partial.empty() ? "stopped; no partial picture is kept on standard output"
@@ -237,8 +245,42 @@ class Run {
       }
     }
     if (complete || renderer.statistics().frames > 0) output.finish();
-    report(renderer, complete ? "complete" : "stopped");
-    return complete ? kComplete : kStopped;
+    const bool differs = renderer.statistics().verify.differing > 0;
+    report(renderer, differs ? "differs" : complete ? "complete" : "stopped");
+    return verified(renderer, complete ? kComplete : kStopped);
+  }
+
+  std::string why_no_eye_tree() const {
+    if (options_.intersector != IntersectorKind::kFas)
+      return "there is no tree of eye rays to draw: --intersector fas makes one";
+    if (settings_.aperture > 0)
+      return "there is no tree of eye rays to draw: they do not start at one point, because the camera has "
+             "an aperture";
+    return "there is no tree of eye rays to draw: the scene has so few objects that all are tested";
+  }
+
+  std::string tree_drawing(const Renderer& renderer, const FrameBuffer& picture, int frame) const {
+    TreeDrawing drawing;
+    drawing.width = settings_.window_width();
+    drawing.height = settings_.window_height();
+    drawing.title = fmt::format("Tree of eye rays of {}, frame {}", scene_name(), frame);
+    for (const ClassReport& c : renderer.statistics().intersector.classes) {
+      if (c.rays != ClassReport::Rays::kEye || c.queries() == 0) continue;
+      drawing.note =
+          fmt::format("Of {} eye rays so far, {:.1f} % were answered in the tree.", c.queries(),
+                      100 * static_cast<double>(c.in_tree.rays) / static_cast<double>(c.queries()));
+    }
+    return tree_svg(tree_cells(*renderer.eye_tree(), renderer.camera(), settings_), drawing,
+                    embeddable_png(picture));
+  }
+
+  /// The exit code, after a last word about what --verify found.
+  static ExitCode verified(const Renderer& renderer, ExitCode code) {
+    const VerifyCounts& found = renderer.statistics().verify;
+    if (found.differing == 0) return code;
+    complain(fmt::format("error: of {} rays verified, {} have another answer than brute force gives",
+                         found.rays(), found.differing));
+    return kDiffers;
   }
 
   void report(const Renderer& renderer, const char* outcome) {
@@ -254,6 +296,7 @@ class Run {
   }
 
   Options options_;
+  decltype(RenderOptions::wrap) wrap_;
   FileProvider provider_;
   Scene scene_;
   RenderSettings settings_;
@@ -276,7 +319,7 @@ int guarded(Run& run) {
 
 }  // namespace
 
-int run_program(const std::vector<std::string>& arguments) {
+int run_program(const std::vector<std::string>& arguments, const decltype(RenderOptions::wrap)& wrap) {
   try {
     const Options options = parse_options(arguments);
     switch (options.action) {
@@ -295,7 +338,7 @@ int run_program(const std::vector<std::string>& arguments) {
       default:
         break;
     }
-    Run run(options);
+    Run run(options, wrap);
     return guarded(run);
   } catch (const UsageError& error) {
     complain(error.what());

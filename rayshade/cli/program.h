@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "rayshade/render/renderer.h"
+
 namespace rayshade {
 
 /// Exit codes (rayshade(1)).
@@ -13,10 +15,11 @@ enum ExitCode : int {
   kFailed = 1,    ///< error in the scene or while rendering
   kUsage = 2,     ///< wrong usage
   kStopped = 3,   ///< stopped before the end
+  kDiffers = 4,   ///< --verify found an answer that is not that of brute force; wins over kStopped
 };
 
 /// Runs with the arguments after the program's name. Talks on standard error, writes pictures and requested
-/// data to standard output only where asked to; never throws.
-int run_program(const std::vector<std::string>& arguments);
+/// data to standard output only where asked to; never throws. `wrap`: RenderOptions::wrap, for tests.
+int run_program(const std::vector<std::string>& arguments, const decltype(RenderOptions::wrap)& wrap = {});
 
 }  // namespace rayshade

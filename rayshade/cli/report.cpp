@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "rayshade/cli/class_report.h"
 #include "rayshade/cli/json.h"
 
 namespace rayshade {
@@ -113,6 +114,8 @@ std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bo
   row("Total prim. intersection tests:",
       tests == 0 ? "0" : fmt::format("{} ({} hit, {:f}%)", tests, test_hits, percent(test_hits, tests)));
   row("Pixels not a number, negative:", fmt::format("{}, {}", s.nan_pixels, s.negative_pixels));
+  if (s.verify_share > 0)
+    row("Rays verified, differing:", fmt::format("{}, {}", s.verify.rays(), s.verify.differing));
   if (verbose) {
     for (const Skipped& skipped : skipped_work(s)) {
       if (skipped.count > 0) row("Skipped:", fmt::format("{} {}", skipped.count, skipped.what));
@@ -122,6 +125,7 @@ std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bo
       if (is_unused) unused += fmt::format("{}{}", unused.empty() ? "" : ", ", name);
     }
     if (!unused.empty()) row("Not used by the scene, never run:", unused);
+    out += classes_text(s);
     count("Samples in halos of blocks:", s.sampling.halo_samples);
     row("Leaves, shared groups:", fmt::format("{}, {}", s.compile.leaves, s.compile.shared_groups));
     row("Reading, compiling, rendering:",
@@ -160,6 +164,7 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
       .value("shaded_hits", c.shaded_hits);
   j.value("shadow_hits", c.shadow_hits).value("transparent_walks", c.transparent_walks);
   j.value("total_reflections", c.total_reflections);
+  j.value("nearest_queries", c.nearest_queries).value("occlusion_queries", c.occlusion_queries);
   j.end_object();
   j.begin_object("sampling");
   j.value("pixels", s.sampling.pixels).value("supersampled", s.sampling.supersampled);
@@ -176,6 +181,13 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
         .end_object();
   }
   j.end_object();
+  write_classes(s, j);
+  if (s.verify_share > 0) {
+    j.begin_object("verification");
+    j.value("share", s.verify_share).value("nearest", s.verify.nearest);
+    j.value("occlusion", s.verify.occlusion).value("differing", s.verify.differing);
+    j.end_object();
+  }
   j.begin_object("skipped");
   for (const Skipped& skipped : skipped_work(s)) j.value(skipped.name, skipped.count);
   j.end_object();

@@ -15,7 +15,7 @@ struct RunSummary {
   std::string scene;  ///< name as given
   std::string scene_hash;
   std::string version;
-  std::string outcome;  ///< "complete", "stopped" or "failed"
+  std::string outcome;  ///< "complete", "stopped", or "differs": --verify found something
   double parse_seconds = 0;
   double total_cpu_seconds = 0;  ///< user and system, of the process
   double wall_seconds = 0;

@@ -107,7 +107,7 @@ void ClassTracer::choose(std::span<const Query> queries, std::span<Answer> answe
     return ask_tree(queries, answers, some, state, batch, scratch);
   };
   const auto hierarchy = [&](std::span<const std::uint32_t> some) {
-    ask_hierarchy(queries, answers, some, scratch);
+    ask_hierarchy(queries, answers, some, batch, scratch);
   };
   if (!choice_)
     hierarchy(which);
@@ -119,8 +119,16 @@ void ClassTracer::choose(std::span<const Query> queries, std::span<Answer> answe
 
 template <class Query, class Answer>
 void ClassTracer::ask_hierarchy(std::span<const Query> queries, std::span<Answer> answers,
-                                std::span<const std::uint32_t> which, TraceScratch& scratch) const {
-  for (const std::uint32_t i : which) ask_world(scene_, queries[i], answers[i], scratch);
+                                std::span<const std::uint32_t> which, Batch& batch,
+                                TraceScratch& scratch) const {
+  for (const std::uint32_t i : which) ask_hierarchy(queries[i], answers[i], batch, scratch);
+}
+
+template <class Query, class Answer>
+void ClassTracer::ask_hierarchy(const Query& query, Answer& answer, Batch& batch,
+                                TraceScratch& scratch) const {
+  ask_world(scene_, query, answer, scratch);
+  batch.counts->add({1, answer.tests, answer.bounds_tests});
 }
 
 template <class Query, class Answer>
@@ -135,20 +143,20 @@ std::uint64_t ClassTracer::ask_tree(std::span<const Query> queries, std::span<An
   if (flat_)
     ask_flat(queries, answers, which, state, batch, scratch);
   else
-    ask_beams(queries, answers, which, state, scratch);
+    ask_beams(queries, answers, which, state, batch, scratch);
   return building() - before;
 }
 
 template <class Query, class Answer>
 void ClassTracer::ask_beams(std::span<const Query> queries, std::span<Answer> answers,
-                            std::span<const std::uint32_t> which, fas::ThreadState& state,
+                            std::span<const std::uint32_t> which, fas::ThreadState& state, Batch& batch,
                             TraceScratch& scratch) const {
   fas::BeamCache& cache = state.beam_cache(beams_->number());
   for (const std::uint32_t i : which) {
     fas::BeamTree::Query at;
     if (!rayshade::place(*beams_, queries[i], at)) {
       ++cache.counts.elsewhere;
-      ask_world(scene_, queries[i], answers[i], scratch);
+      ask_hierarchy(queries[i], answers[i], batch, scratch);
       continue;
     }
     const fas::BeamLeaf& leaf = beams_->find(at, cache);
@@ -210,7 +218,7 @@ void ClassTracer::ask_flat(std::span<const Query> queries, std::span<Answer> ans
     switch (found) {
       case Place::kElsewhere:
         ++cache.counts.elsewhere;
-        ask_world(scene_, query, answers[i], scratch);
+        ask_hierarchy(query, answers[i], batch, scratch);
         break;
       case Place::kNothing:
         ++cache.counts.outside;

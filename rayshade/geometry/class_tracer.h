@@ -11,6 +11,7 @@
 #include "fas/beam_tree.h"
 #include "fas/choice.h"
 #include "rayshade/geometry/intersector.h"
+#include "rayshade/geometry/intersector_report.h"
 
 namespace rayshade {
 
@@ -25,7 +26,9 @@ struct Batch {
   std::vector<std::vector<std::uint32_t>> which;  ///< queries by class
   std::vector<std::uint8_t> u, v;
   std::vector<double> depth;  ///< rays from the apex: depth per t; rays toward it: where they start
-  std::vector<std::uint32_t> halves[2];  ///< of a group that goes both ways
+  std::vector<std::uint32_t> halves[2];       ///< of a group that goes both ways
+  std::vector<HierarchyCounts> in_hierarchy;  ///< by class
+  HierarchyCounts* counts = nullptr;          ///< of the class at hand
 };
 
 class ClassTracer {
@@ -64,10 +67,13 @@ class ClassTracer {
                          TraceScratch& scratch) const;
   template <class Query, class Answer>
   void ask_hierarchy(std::span<const Query> queries, std::span<Answer> answers,
-                     std::span<const std::uint32_t> which, TraceScratch& scratch) const;
+                     std::span<const std::uint32_t> which, Batch& batch, TraceScratch& scratch) const;
+  template <class Query, class Answer>
+  void ask_hierarchy(const Query& query, Answer& answer, Batch& batch, TraceScratch& scratch) const;
   template <class Query, class Answer>
   void ask_beams(std::span<const Query> queries, std::span<Answer> answers,
-                 std::span<const std::uint32_t> which, fas::ThreadState& state, TraceScratch& scratch) const;
+                 std::span<const std::uint32_t> which, fas::ThreadState& state, Batch& batch,
+                 TraceScratch& scratch) const;
   template <class Query, class Answer>
   void ask_flat(std::span<const Query> queries, std::span<Answer> answers,
                 std::span<const std::uint32_t> which, fas::ThreadState& state, Batch& batch,

@@ -47,6 +47,15 @@ enum class LeafKind : std::uint8_t {
 };
 inline constexpr int kLeafKinds = static_cast<int>(LeafKind::kInstance) + 1;
 
+/// What the kind is called in reports about single objects.
+constexpr const char* name_of(LeafKind kind) {
+  constexpr const char* kNames[kLeafKinds] = {"plane",           "sphere",      "box",     "disc",
+                                              "cylinder",        "cone",        "torus",   "triangle",
+                                              "smooth triangle", "uv triangle", "polygon", "blob",
+                                              "height field",    "CSG object",  "instance"};
+  return kNames[static_cast<int>(kind)];
+}
+
 /// What the untextured surfaces below a leaf may be (rule 5); CSG and instances may be both.
 enum Opacity : std::uint8_t { kOpaque = 1, kTransparent = 2, kAnyOpacity = 3 };
 

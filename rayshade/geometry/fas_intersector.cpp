@@ -39,6 +39,18 @@ class FasIntersector final : public Intersector {
     ask(queries, answers, scratch);
   }
 
+  void report(const TraceScratch& scratch, IntersectorReport& into) const override {
+    into.method = IntersectorReport::Method::kTrees;
+    into.classes.resize(classes_.size());
+    for (std::size_t c = 0; c < classes_.size(); ++c) report_class(c, scratch, into.classes[c]);
+    into.pool_used = std::max<std::uint64_t>(into.pool_used, pool_.used());
+    into.pool_held = std::max<std::uint64_t>(into.pool_held, pool_.held());
+    into.pool_budget = pool_.budget();
+    into.pool_exhausted |= pool_.exhausted();
+  }
+
+  const fas::HyperTree* eye_tree() const override { return classes_[kEye].flat(); }
+
  private:
   static constexpr std::size_t kMostAtOnce = 4096;
 
@@ -104,18 +116,49 @@ class FasIntersector final : public Intersector {
   }
   std::size_t class_of(const OcclusionQuery& query) const { return light_class(query.light); }
 
+  void report_class(std::size_t number, const TraceScratch& scratch, ClassReport& into) const {
+    using Rays = ClassReport::Rays;
+    using Tree = ClassReport::Tree;
+    const ClassTracer& tracer = classes_[number];
+    into.tree = tracer.flat() ? Tree::kFlat : tracer.beams() ? Tree::kDeep : Tree::kNoTree;
+    switch (number) {
+      case kEye:
+        into.rays = Rays::kEye;
+        break;
+      case kReflected:
+        into.rays = Rays::kReflected;
+        break;
+      case kTransmitted:
+        into.rays = Rays::kTransmitted;
+        break;
+      default:
+        into.light = static_cast<std::uint32_t>(number - kFirstLight);
+        into.rays = into.light < options_.lights.size() ? Rays::kLight : Rays::kOther;
+    }
+    if (!scratch.trees || !scratch.batch) return;
+    const auto add = [&](const auto& caches, std::size_t tree) {
+      if (tree < caches.size()) into.in_tree.add(caches[tree].counts);
+    };
+    if (tracer.flat()) add(scratch.trees->caches, tracer.flat()->number());
+    if (tracer.beams()) add(scratch.trees->beam_caches, tracer.beams()->number());
+    const auto& in_hierarchy = static_cast<const Batch*>(scratch.batch.get())->in_hierarchy;
+    if (number < in_hierarchy.size()) into.in_hierarchy.add(in_hierarchy[number]);
+  }
+
   template <class Query, class Answer>
   void ask(std::span<const Query> queries, std::span<Answer> answers, TraceScratch& scratch) const {
     if (!scratch.trees) scratch.trees = std::make_unique<fas::ThreadState>(pool_);
     if (!scratch.batch) scratch.batch = std::make_shared<Batch>();
     Batch& batch = *static_cast<Batch*>(scratch.batch.get());
     batch.which.resize(std::max(batch.which.size(), classes_.size()));
+    batch.in_hierarchy.resize(batch.which.size());
     for (std::size_t first = 0; first < queries.size(); first += kMostAtOnce) {
       const std::size_t count = std::min(kMostAtOnce, queries.size() - first);
       const auto some = queries.subspan(first, count);
       for (std::uint32_t i = 0; i < count; ++i) batch.which[class_of(some[i])].push_back(i);
       for (std::size_t c = 0; c < classes_.size(); ++c) {
         if (batch.which[c].empty()) continue;
+        batch.counts = &batch.in_hierarchy[c];
         classes_[c].ask(some, answers.subspan(first, count), batch.which[c], *scratch.trees, batch, scratch);
         batch.which[c].clear();
       }

@@ -12,7 +12,15 @@
 
 namespace rayshade {
 
+struct IntersectorReport;
+
 enum class RayKind : std::uint8_t { kEye, kReflected, kTransmitted, kShadow };
+
+/// What the kind is called in reports.
+constexpr const char* name_of(RayKind kind) {
+  constexpr const char* kNames[] = {"eye ray", "reflected ray", "transmitted ray", "shadow ray"};
+  return kNames[static_cast<int>(kind)];
+}
 
 struct NearestQuery {
   Ray ray;
@@ -59,6 +67,10 @@ class Intersector {
   virtual std::size_t preferred_span() const { return 64; }
   /// The compiled scene has been prepared for another frame; scratches used before must not be used again.
   virtual void scene_changed() {}
+  /// Adds to `into` what was done with this scratch, which must not be in use; once for each scratch.
+  virtual void report(const TraceScratch& /*scratch*/, IntersectorReport& /*into*/) const {}
+  /// The tree of rays from the eye's point; null where there is none.
+  virtual const fas::HyperTree* eye_tree() const { return nullptr; }
 };
 
 /// Tests every leaf for every ray; stays for ever as the oracle.

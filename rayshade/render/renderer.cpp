@@ -72,6 +72,10 @@ class LayerSpans {
         fields_.push_back(offsetof(BlockPixels::Layer, bounds_tests));
       else if (name == "microseconds")
         fields_.push_back(offsetof(BlockPixels::Layer, microseconds));
+      else if (name == "rays")
+        fields_.push_back(offsetof(BlockPixels::Layer, rays));
+      else if (name == "tree_rays")
+        fields_.push_back(offsetof(BlockPixels::Layer, tree_rays));
       else
         throw std::invalid_argument("unknown layer " + name);
     }
@@ -130,6 +134,8 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider&
   frame_.shading.textures = textures_.get();
   frame_.shading.settings = &settings_;
   frame_.shading.lights = prepare_lights(scene);
+  for (std::size_t i = 0; i < frame_.shading.lights.size(); ++i)
+    statistics_.light_names.push_back(light_name(frame_.shading.lights, i));
   make_intersector();
   frame_.shading.intersector = intersector_.get();
   frame_.camera = camera_.get();
@@ -140,6 +146,7 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider&
 
   statistics_.compile = compiled_->counts;
   statistics_.threads = options.threads;
+  statistics_.verify_share = options.verify;
   statistics_.without_motion = !compiled_->has_motion;
   statistics_.without_lens = !camera_->has_lens();
   statistics_.without_csg = !compiled_->has_csg;
@@ -178,6 +185,13 @@ void Renderer::make_intersector() {
       break;
   }
   if (options_.wrap) intersector_ = options_.wrap(*compiled_, std::move(intersector_));
+  if (options_.verify > 0) {
+    auto verifier = std::make_unique<VerifyingIntersector>(
+        *compiled_, std::move(intersector_),
+        VerifyOptions{options_.verify, statistics_.light_names, options_.report_difference});
+    verifier_ = verifier.get();
+    intersector_ = std::move(verifier);
+  }
 }
 
 void Renderer::prepare_frame(int frame) {
@@ -232,6 +246,7 @@ bool Renderer::render_frame(int frame, FrameBuffer& picture, const std::atomic<b
     }
     const std::lock_guard lock(crew.mutex);
     statistics_.trace.add(renderer.tree().scratch().counts);
+    intersector_->report(renderer.tree().scratch(), statistics_.intersector);
     statistics_.shading.add(renderer.tree().counts());
     statistics_.sampling.add(renderer.counts());
     statistics_.peak_tree_nodes =
@@ -258,6 +273,7 @@ bool Renderer::render_frame(int frame, FrameBuffer& picture, const std::atomic<b
     }
   }
   statistics_.render_seconds += seconds_since(start);
+  if (verifier_) statistics_.verify = verifier_->counts();
   if (crew.error) located([&] { std::rethrow_exception(crew.error); });
   const PixelStatistics seen = picture.statistics();
   statistics_.nan_pixels += seen.not_a_number;
@@ -274,6 +290,7 @@ std::string Renderer::explain(int frame, int x, int y) {
   renderer.tree().scratch().brute_force = brute_force();
   ExplainText text(frame_);
   located([&] { renderer.observe(x, y, text); });
+  if (verifier_) statistics_.verify = verifier_->counts();
   return text.text();
 }
 

@@ -30,6 +30,9 @@ struct RenderOptions {
   /// Puts an intersector of one's own around (or in place of) the one made: to record or to check its
   /// answers.
   std::function<std::unique_ptr<Intersector>(const CompiledScene&, std::unique_ptr<Intersector>)> wrap;
+  /// Share of all queries that brute force is asked again (VerifyingIntersector); 0: none, at no cost.
+  double verify = 0;
+  std::function<void(const std::string&)> report_difference;  ///< VerifyOptions::report
   bool layers = false;
   bool cost = false;
   bool sample_map = false;  ///< alpha tells which pixels are fully sampled
@@ -66,6 +69,9 @@ class Renderer {
 
   const RenderStatistics& statistics() const { return statistics_; }
   const CompiledScene& compiled() const { return *compiled_; }
+  const Camera& camera() const { return *camera_; }
+  /// The tree of eye rays as it is now; null where there is none. Not while a frame is rendered.
+  const fas::HyperTree* eye_tree() const { return intersector_->eye_tree(); }
   /// The classes of rays of this scene, as make_fas takes them.
   FasOptions fas_options() const;
 
@@ -79,6 +85,7 @@ class Renderer {
   std::unique_ptr<CompiledScene> compiled_;
   std::unique_ptr<CompiledTextures> textures_;
   std::unique_ptr<Intersector> intersector_;
+  const VerifyingIntersector* verifier_ = nullptr;  ///< intersector_, if that is one
   std::unique_ptr<Camera> camera_;
   std::unique_ptr<SampleGrid> grid_;
   FrameScene frame_;

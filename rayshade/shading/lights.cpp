@@ -57,6 +57,10 @@ std::vector<ShadingLight> prepare_lights(const Scene& scene) {
   return lights;
 }
 
+std::string light_name(const std::vector<ShadingLight>& lights, std::size_t light) {
+  return "light " + std::to_string(lights.size() - light) + " (" + name_of(lights[light].kind) + ")";
+}
+
 RayClass shadow_class(const ShadingLight& light) {
   switch (light.kind) {
     case LightKind::kPoint:

@@ -126,6 +126,26 @@ struct RayTree::Walk {
   bool through_all = false;  ///< asks for all leaves, not just transparent ones
 };
 
+/// Tells for whom the queries of a span are, as long as it lives.
+template <class SampleOf>
+class RayTree::Owners final : public QueryOwners {
+ public:
+  Owners(RayTree& tree, const SampleOf& sample_of) : tree_(tree), sample_of_(sample_of) {
+    tree_.scratch_.owners = this;
+  }
+  ~Owners() override { tree_.scratch_.owners = nullptr; }
+  Owners(const Owners&) = delete;
+  Owners& operator=(const Owners&) = delete;
+  RayOwner owner(std::size_t query) const override {
+    const EyeSample& sample = tree_.samples_[sample_of_(query)];
+    return {sample.x, sample.y, sample.sample};
+  }
+
+ private:
+  RayTree& tree_;
+  const SampleOf& sample_of_;
+};
+
 RayTree::RayTree(const ShadingScene& scene) : scene_(scene) {
   // Small enough that a batch and its answers stay in the second-level cache.
   batch_ = std::clamp<std::size_t>(kQueriesPerRun / std::max<std::size_t>(1, scene.lights.size()), 1,
@@ -148,6 +168,7 @@ std::uint32_t RayTree::allocate() {
 
 void RayTree::trace(std::span<const EyeSample> samples, std::span<SampleResult> results) {
   counts_.eye_rays += samples.size();
+  samples_ = samples;
   for (std::size_t first = 0; first < samples.size(); first += batch_) {
     start_batch(first, std::min(batch_, samples.size() - first), samples, results);
     while (!pending_.empty()) run_batch(samples, results);
@@ -168,7 +189,7 @@ void RayTree::start_batch(std::size_t first, std::size_t count, std::span<const 
     query.depth = 0;
     query.light = kNone;
   }
-  ask_nearest();
+  ask_nearest([&](std::size_t i) { return first + i; });
   batch_nodes_.clear();
   batch_answers_.clear();
   const bool misses_are_background = scene_.settings->effects.empty() && !observer_;
@@ -222,12 +243,15 @@ void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResu
     query.light = kNone;
     batch_answers_[i] = static_cast<std::uint32_t>(i);
   }
-  ask_nearest();
+  ask_nearest([&](std::size_t i) { return nodes_[batch_nodes_[i]].root; });
   shade_batch(samples, results);
 }
 
-void RayTree::ask_nearest() {
+template <class SampleOf>
+void RayTree::ask_nearest(const SampleOf& sample_of) {
   const std::size_t count = nearest_queries_.size();
+  counts_.nearest_queries += count;
+  const Owners owners(*this, sample_of);
   if (nearest_answers_.size() < count) nearest_answers_.resize(count);
   scene_.intersector->nearest(nearest_queries_, {nearest_answers_.data(), count}, scratch_);
 }
@@ -391,7 +415,14 @@ void RayTree::answer_shadows(std::span<SampleResult> results) {
     return;
   }
   const std::span<OcclusionAnswer> answers(shadow_answers_.data(), shadow_queries_.size());
-  scene_.intersector->occluded(shadow_queries_, answers, scratch_);
+  counts_.occlusion_queries += shadow_queries_.size();
+  {
+    const auto sample_of = [&](std::size_t i) {
+      return nodes_[shades_[lights_[shadow_owner_[i]].shade].node].root;
+    };
+    const Owners owners(*this, sample_of);
+    scene_.intersector->occluded(shadow_queries_, answers, scratch_);
+  }
   for (std::size_t i = 0; i < shadow_queries_.size(); ++i) {
     PendingLight& pending = lights_[shadow_owner_[i]];
     SampleResult& result = results[nodes_[shades_[pending.shade].node].root];
@@ -438,7 +469,14 @@ void RayTree::follow_transparent(bool through_all, std::span<SampleResult> resul
       out.depth = 0;
       out.light = query.light;
     }
-    scene_.intersector->nearest({queries.data(), walks_.size()}, answers, scratch_);
+    counts_.nearest_queries += walks_.size();
+    {
+      const auto sample_of = [&](std::size_t i) {
+        return nodes_[shades_[lights_[walks_[i].pending].shade].node].root;
+      };
+      const Owners owners(*this, sample_of);
+      scene_.intersector->nearest({queries.data(), walks_.size()}, answers, scratch_);
+    }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < walks_.size(); ++i) {
       Walk& walk = walks_[i];

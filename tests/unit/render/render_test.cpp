@@ -105,6 +105,25 @@ TEST(RenderTest, TheHierarchyGivesThePictureOfBruteForce) {
   EXPECT_EQ(render(scene, {}, brute).rgba, render(scene).rgba);
 }
 
+TEST(RenderTest, VerificationChecksTheSameRaysWhateverTheThreads) {
+  const Scene scene = parse(kEverything);
+  RenderOptions options;
+  options.block_side = 16;  // the halos of blocks hold rays of their own
+  const Picture plain = render(scene, {}, options);
+  options.verify = 0.2;
+  const Picture one = render(scene, {}, options);
+  options.threads = 3;
+  const Picture three = render(scene, {}, options);
+  EXPECT_EQ(one.rgba, plain.rgba);
+  const VerifyCounts &a = one.statistics.verify, &b = three.statistics.verify;
+  EXPECT_EQ(a.nearest, b.nearest);
+  EXPECT_EQ(a.occlusion, b.occlusion);
+  EXPECT_EQ(a.differing + b.differing, 0u);
+  const double share = static_cast<double>(a.rays()) / static_cast<double>(one.statistics.shading.queries());
+  EXPECT_NEAR(share, 0.2, 0.05);
+  EXPECT_EQ(plain.statistics.verify.rays(), 0u);
+}
+
 TEST(RenderTest, WindowsAndCropsAreThatPartOfTheWhole) {
   const Scene scene = parse(kEverything);
   const Picture whole = render(scene);
