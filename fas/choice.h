@@ -24,8 +24,13 @@ class Choice {
   /// Smaller groups are not worth a comparison.
   static constexpr std::size_t kFewest = 32;
 
-  /// `rays`: how many of this class are expected.
-  explicit Choice(double rays) : expected_(std::max(rays, 1.0)) {}
+  /// `rays`: how many of this class are expected. Where they are not many more than the primitives, the tree
+  /// is not tried before as many have come.
+  Choice(double rays, double primitives) : expected_(std::max(rays, 1.0)) {
+    if (rays >= kRaysPerPrimitive * primitives) return;
+    tree_mode_ = false;
+    again_ = static_cast<std::uint64_t>(std::min(kRaysPerPrimitive * primitives, 1e18));
+  }
 
   /// For the next group, of so many rays.
   Way next(std::size_t rays) {
@@ -60,13 +65,14 @@ class Choice {
       return static_cast<double>(a.load(std::memory_order_relaxed)) /
              static_cast<double>(std::max<std::uint64_t>(b.load(std::memory_order_relaxed), 1));
     };
-    if (all_.load(std::memory_order_relaxed) < kTrial) return;
-    const double plain = share(all_hierarchy_ns_, all_);
-    const bool quiet = compared_.load(std::memory_order_relaxed) >= kTrial;
-    const double ratio = quiet ? share(tree_ns_, hierarchy_ns_) : kGuess;
     const double growth =
         std::sqrt(std::min(1.0, static_cast<double>(tree_rays_.load(std::memory_order_relaxed)) / expected_));
-    if (ratio * plain + growth * share(building_, tree_rays_) <= (1.5 - 0.5 * growth) * plain) return;
+    const double plain = share(all_hierarchy_ns_, all_), made = growth * share(building_, tree_rays_);
+    const bool hopeless = made > 3 * plain;
+    if (!hopeless && all_.load(std::memory_order_relaxed) < kTrial) return;
+    const bool quiet = compared_.load(std::memory_order_relaxed) >= kTrial;
+    const double ratio = quiet ? share(tree_ns_, hierarchy_ns_) : kGuess;
+    if (!hopeless && ratio * plain + made <= (1.5 - 0.5 * growth) * plain) return;
     const std::uint64_t pause = pause_.load(std::memory_order_relaxed);
     again_.store(seen_.load(std::memory_order_relaxed) + pause, std::memory_order_relaxed);
     pause_.store(4 * pause, std::memory_order_relaxed);
@@ -80,6 +86,7 @@ class Choice {
   static std::uint64_t add(std::atomic<std::uint64_t>& sum, std::uint64_t n) {
     return sum.fetch_add(n, std::memory_order_relaxed) + n;
   }
+  static constexpr double kRaysPerPrimitive = 6;
   /// Rays compared before the first judgement.
   static constexpr std::uint64_t kTrial = 1024;
   /// Time through a tree by that through the hierarchy, as long as nothing better is known.

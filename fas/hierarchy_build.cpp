@@ -55,35 +55,42 @@ class Builder {
   using Node = Hierarchy::Node;
   explicit Builder(std::vector<Item>& items) : items_(items) {}
 
-  /// Nodes over all items.
-  std::vector<Node> build(int threads) {
+  /// Puts the items in order, and makes nodes over all of them.
+  void build(int threads) {
     const auto count = static_cast<std::uint32_t>(items_.size());
     grain_ = std::max(kSmallestTask, count / kTasks);
-    std::vector<Node> nodes;
-    nodes.reserve(count / 5 + 1);
-    make_node(range(0, count), 0, nodes, true);
-    std::vector<std::vector<Node>> parts(tasks_.size());
+    make_node(range(0, count), 0, top_, true);
+    parts_.resize(tasks_.size());
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
-      for (std::size_t i = next++; i < tasks_.size(); i = next++)
-        make_node(tasks_[i].range, tasks_[i].depth, parts[i], false);
+      for (std::size_t i = next++; i < tasks_.size(); i = next++) {
+        make_node(tasks_[i].range, tasks_[i].depth, parts_[i], false);
+        parts_[i].shrink_to_fit();
+      }
     };
     std::vector<std::thread> others;
     for (int i = 1; i < threads && static_cast<std::size_t>(i) < tasks_.size(); ++i)
       others.emplace_back(work);
     work();
     for (std::thread& thread : others) thread.join();
+  }
+
+  /// The nodes in one piece. Items are no longer needed.
+  std::vector<Node> take_nodes() {
+    std::vector<Node> nodes = std::move(top_);
+    std::size_t total = nodes.size();
+    for (const std::vector<Node>& part : parts_) total += part.size();
+    nodes.reserve(total);
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
       const auto offset = static_cast<std::uint32_t>(nodes.size());
       nodes[tasks_[i].node].child[tasks_[i].lane] = offset;
-      for (Node& node : parts[i]) {
+      for (Node& node : parts_[i]) {
         for (std::uint32_t& child : node.child)
           if ((child & Hierarchy::kLeafBit) == 0) child += offset;
       }
-      nodes.insert(nodes.end(), parts[i].begin(), parts[i].end());
-      std::vector<Node>().swap(parts[i]);
+      nodes.insert(nodes.end(), parts_[i].begin(), parts_[i].end());
+      std::vector<Node>().swap(parts_[i]);
     }
-    nodes.shrink_to_fit();
     return nodes;
   }
 
@@ -234,6 +241,8 @@ class Builder {
   std::vector<Item>& items_;
   std::uint32_t grain_ = 0;
   std::vector<Task> tasks_;
+  std::vector<Node> top_;
+  std::vector<std::vector<Node>> parts_;  ///< of the tasks
 };
 
 }  // namespace
@@ -259,9 +268,12 @@ Hierarchy::Hierarchy(std::vector<Bounds> boxes, std::span<const std::uint8_t> ma
     items[i].hi[3] = std::bit_cast<float>(static_cast<std::uint32_t>(masks[i]));
   }
   std::vector<Bounds>().swap(boxes);  // a million of them weigh as much as the result
-  nodes_ = Builder(items).build(threads);
+  Builder builder(items);
+  builder.build(threads);
   order.resize(items.size());
   for (std::size_t i = 0; i < items.size(); ++i) order[i] = items[i].id();
+  std::vector<Item>().swap(items);
+  nodes_ = builder.take_nodes();
 }
 
 }  // namespace fas

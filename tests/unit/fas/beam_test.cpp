@@ -207,7 +207,7 @@ TEST(BeamTree, IsGrownByManyThreadsAtOnce) {
 
 TEST(Choice, LeavesATreeThatIsSlowerAloneAndComesBack) {
   using Way = Choice::Way;
-  Choice choice(1e6);
+  Choice choice(1e6, 1000);
   std::size_t through_tree = 0, rays = 0;
   const auto run = [&](double tree, double hierarchy, int groups) {
     through_tree = rays = 0;
@@ -226,8 +226,11 @@ TEST(Choice, LeavesATreeThatIsSlowerAloneAndComesBack) {
   // It is given another try, more and more seldom.
   EXPECT_GT(run(400, 100, 200'000), 0);
   EXPECT_LT(run(400, 100, 200'000), 0.05);
+  // Where primitives are as many as rays, it waits.
+  Choice crowded(1e6, 1e6);
+  EXPECT_EQ(crowded.next(64), Way::kHierarchy);
   // Building that never ends counts, too.
-  Choice slow(1e4);
+  Choice slow(1e4, 1000);
   int left = 0;
   for (int i = 0; i < 2000; ++i) {
     const Way way = slow.next(64);
