@@ -38,7 +38,7 @@ test-packages:
 bench-packages:
 	$(call need,$(PACKAGES) $(BENCH_PACKAGES))
 lint-packages:
-	$(call need,$(PACKAGES) $(TEST_PACKAGES) $(LINT_PACKAGES))
+	$(call need,$(PACKAGES) $(TEST_PACKAGES) $(filter-out povray,$(BENCH_PACKAGES)) $(LINT_PACKAGES))
 
 build: packages ## build the programs into build/bin
 	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DCMAKE_INSTALL_PREFIX=$(PREFIX)
@@ -96,9 +96,10 @@ package: packages ## build a Debian package in build/ and check it
 
 lint: lint-packages ## a second compiler, clang-format and clang-tidy
 	clang-format --dry-run -Werror $$(git ls-files '*.cpp' '*.h')
-	cmake -S . -B build-lint -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release
+	cmake -S . -B build-lint -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release \
+	  -DRAYSHADE_TESTS=ON -DRAYSHADE_BENCH=ON
 	cmake --build build-lint -j $(JOBS)
-	run-clang-tidy -p build-lint -quiet -j $(JOBS) '$(CURDIR)/(fas|rayshade|scenes)/.*'
+	run-clang-tidy -p build-lint -quiet -j $(JOBS) '$(CURDIR)/(fas|rayshade|scenes|tests|bench)/.*'
 
 format: lint-packages ## format all sources
 	clang-format -i $$(git ls-files '*.cpp' '*.h')

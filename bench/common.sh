@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+# shellcheck shell=bash
 # Sourced by the scripts beside it: where things are, what they run on, and tables in docs/performance.md.
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 databases=(balls gears mount rings teapot tetra tree)

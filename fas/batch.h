@@ -136,7 +136,8 @@ void nearest_in_group(HyperTree& tree, ThreadState& state, const Leaf& leaf, con
 }
 
 /// Which rays of a group toward the apex (or along a parallel view) are stopped. `depths[i]`: where ray i
-/// starts. `test(primitive, mask)`: those of the mask that the primitive stops.
+/// starts. `test(primitive, mask)` tests a primitive against the rays of the mask and returns those that need
+/// no further tests; that may be none, to whom everything between start and apex is shown.
 template <class Test>
 std::uint64_t occluded_in_group(HyperTree& tree, ThreadState& state, const Leaf& leaf,
                                 const HyperTree::Query& any, GroupProbe& rays, const double* depths,

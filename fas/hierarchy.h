@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "fas/geometry.h"
+#include "fas/fas.h"
 
 namespace fas {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "fas/geometry.h"
+#include "fas/candidates.h"
 #include "fas/hierarchy.h"
 
 namespace fas {

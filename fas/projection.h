@@ -9,7 +9,7 @@
 // bounds themselves round (see View::slack); divisions get the error of their operands on top.
 #pragma once
 
-#include "fas/geometry.h"
+#include "fas/fas.h"
 
 namespace fas {
 

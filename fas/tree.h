@@ -25,6 +25,7 @@
 #include <memory>
 #include <vector>
 
+#include "fas/candidates.h"
 #include "fas/kernels.h"
 #include "fas/projection.h"
 #include "fas/thread_state.h"

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the trees of one structure learn while they run. Only speed depends on any of it: what is found never
-// does, so that updates may race and then only make an average of fewer samples.
+// What the trees of one structure learn while they run. Only speed depends on it: what is found never does,
+// so that updates may race and then only make an average of fewer samples.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 
 namespace fas {
 
@@ -22,84 +18,6 @@ class Tuner {
 
  private:
   std::atomic<double> per_candidate_{60};
-};
-
-/// Whether the rays of a class go through its tree or through the hierarchy alone. The tree is tried first;
-/// of some groups of rays one half goes through the hierarchy, both timed: rays side by side cost alike. What
-/// has been built so far is expected to grow with the square root of the rays, up to as many as are expected.
-/// If the tree then costs more than the hierarchy, it is left alone for a while, longer from time to time.
-class Choice {
- public:
-  enum class Way : std::uint8_t { kTree, kHierarchy, kBoth };
-  /// Smaller groups are not worth a comparison.
-  static constexpr std::size_t kFewest = 32;
-
-  /// `rays`: how many of this class are expected.
-  explicit Choice(double rays) : expected_(std::max(rays, 1.0)) {}
-
-  /// For the next group, of so many rays.
-  Way next(std::size_t rays) {
-    const std::uint64_t seen = add(seen_, rays);
-    if (!tree_mode_.load(std::memory_order_relaxed)) {
-      if (seen < again_.load(std::memory_order_relaxed)) return Way::kHierarchy;
-      tree_mode_.store(true, std::memory_order_relaxed);
-    }
-    if (rays < kFewest) return Way::kTree;
-    const std::uint32_t every = compared_.load(std::memory_order_relaxed) < 4 * kTrial ? 8 : 32;
-    return turn_.fetch_add(1, std::memory_order_relaxed) % every == 0 ? Way::kBoth : Way::kTree;
-  }
-
-  /// After rays went through the tree, `ns` of which it took to make nodes.
-  void built(std::size_t rays, std::uint64_t ns) {
-    add(tree_rays_, rays);
-    add(building_, ns);
-  }
-  /// Whether the hierarchy comes first in the next comparison: whoever does finds the caches cold.
-  bool hierarchy_first() const { return turn_.load(std::memory_order_relaxed) / 8 % 2 != 0; }
-  /// After a comparison of so many rays on either side: nanoseconds, and those of them to make nodes. Groups
-  /// that made many tell little of what the tree is like when it is there.
-  void compared(std::size_t rays, double tree, double hierarchy, double building_now) {
-    add(all_, rays);
-    add(all_hierarchy_ns_, static_cast<std::uint64_t>(hierarchy));
-    if (building_now < 0.1 * tree) {
-      add(compared_, rays);
-      add(tree_ns_, static_cast<std::uint64_t>(tree - building_now));
-      add(hierarchy_ns_, static_cast<std::uint64_t>(hierarchy));
-    }
-    const auto share = [](const std::atomic<std::uint64_t>& a, const std::atomic<std::uint64_t>& b) {
-      return static_cast<double>(a.load(std::memory_order_relaxed)) /
-             static_cast<double>(std::max<std::uint64_t>(b.load(std::memory_order_relaxed), 1));
-    };
-    if (all_.load(std::memory_order_relaxed) < kTrial) return;
-    const double plain = share(all_hierarchy_ns_, all_);
-    const bool quiet = compared_.load(std::memory_order_relaxed) >= kTrial;
-    const double ratio = quiet ? share(tree_ns_, hierarchy_ns_) : kGuess;
-    const double growth =
-        std::sqrt(std::min(1.0, static_cast<double>(tree_rays_.load(std::memory_order_relaxed)) / expected_));
-    if (ratio * plain + growth * share(building_, tree_rays_) <= (1.5 - 0.5 * growth) * plain) return;
-    const std::uint64_t pause = pause_.load(std::memory_order_relaxed);
-    again_.store(seen_.load(std::memory_order_relaxed) + pause, std::memory_order_relaxed);
-    pause_.store(4 * pause, std::memory_order_relaxed);
-    for (std::atomic<std::uint64_t>* sum :
-         {&compared_, &tree_ns_, &hierarchy_ns_, &tree_rays_, &building_, &all_, &all_hierarchy_ns_})
-      sum->store(0, std::memory_order_relaxed);
-    tree_mode_.store(false, std::memory_order_relaxed);
-  }
-
- private:
-  static std::uint64_t add(std::atomic<std::uint64_t>& sum, std::uint64_t n) {
-    return sum.fetch_add(n, std::memory_order_relaxed) + n;
-  }
-  /// Rays compared before the first judgement.
-  static constexpr std::uint64_t kTrial = 1024;
-  /// Time through a tree by that through the hierarchy, as long as nothing better is known.
-  static constexpr double kGuess = 0.7;
-  double expected_;
-  std::atomic<bool> tree_mode_{true};
-  std::atomic<std::uint32_t> turn_{0};
-  std::atomic<std::uint64_t> compared_{0}, tree_ns_{0}, hierarchy_ns_{0}, tree_rays_{0}, building_{0},
-      all_{0}, all_hierarchy_ns_{0};
-  std::atomic<std::uint64_t> seen_{0}, again_{0}, pause_{std::uint64_t{1} << 16};
 };
 
 }  // namespace fas

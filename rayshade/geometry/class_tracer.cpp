@@ -2,7 +2,6 @@
 #include "rayshade/geometry/class_tracer.h"
 
 #include <array>
-#include <chrono>
 #include <cmath>
 
 #include "rayshade/geometry/pack_tracer.h"
@@ -39,7 +38,7 @@ bool place(const fas::BeamTree& tree, const OcclusionQuery& query, fas::BeamTree
   return tree.place(origin, direction, out);
 }
 
-// What nearest hits and occlusion do differently in a pack. Masks are of the rays that are stopped.
+// What nearest hits and occlusion do differently in a pack. Masks are of the rays whose answer is known.
 
 void load(PackTracer& tracer, std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
           const std::uint32_t* places, int count) {
@@ -60,19 +59,15 @@ RayPack::Mask try_leaf(PackTracer& tracer, std::span<const OcclusionQuery> /*kin
   return mask != 0 ? tracer.occlude(leaf, mask) : 0;
 }
 
-void answer(PackTracer& tracer, std::span<NearestAnswer> /*answers*/, RayPack::Mask /*stopped*/) {
-  tracer.answer_nearest();
-}
-void answer(PackTracer& tracer, std::span<OcclusionAnswer> answers, RayPack::Mask stopped) {
-  tracer.answer_occluded(answers, stopped);
-}
+void answer(PackTracer& tracer, std::span<NearestAnswer> /*answers*/) { tracer.answer_nearest(); }
+void answer(PackTracer& tracer, std::span<OcclusionAnswer> answers) { tracer.answer_occluded(answers); }
 
 template <class Query>
 RayPack::Mask try_unbounded(PackTracer& tracer, const Group& world, std::span<const Query> kind) {
-  RayPack::Mask stopped = 0;
+  RayPack::Mask known = 0;
   for (LeafId leaf = world.first; leaf < world.first + world.unbounded; ++leaf)
-    stopped |= try_leaf(tracer, kind, leaf, tracer.pack().all() & ~stopped);
-  return stopped;
+    known |= try_leaf(tracer, kind, leaf, tracer.pack().all() & ~known);
+  return known;
 }
 
 }  // namespace
@@ -108,33 +103,18 @@ template <class Query, class Answer>
 void ClassTracer::choose(std::span<const Query> queries, std::span<Answer> answers,
                          std::span<const std::uint32_t> which, fas::ThreadState& state, Batch& batch,
                          TraceScratch& scratch) const {
-  using Way = fas::Choice::Way;
-  const Way way = !choice_ ? Way::kHierarchy : always_ ? Way::kTree : choice_->next(which.size());
-  if (way == Way::kHierarchy) {
-    ask_hierarchy(queries, answers, which, batch, scratch);
-    return;
-  }
-  if (way == Way::kTree) {
-    choice_->built(which.size(), ask_tree(queries, answers, which, state, batch, scratch));
-    return;
-  }
-  const std::size_t half = which.size() / 2;
-  for (std::vector<std::uint32_t>& places : batch.halves) places.clear();
-  for (std::size_t i = 0; i < which.size(); ++i) batch.halves[i % 2].push_back(which[i]);
-  using Clock = std::chrono::steady_clock;
-  std::uint64_t building = 0;
-  double tree_ns = 0, hierarchy_ns = 0;
-  const bool hierarchy_first = choice_->hierarchy_first();
-  for (const bool tree : {!hierarchy_first, hierarchy_first}) {
-    const Clock::time_point start = Clock::now();
-    if (tree)
-      building = ask_tree(queries, answers, {batch.halves[0]}, state, batch, scratch);
-    else
-      ask_hierarchy(queries, answers, {batch.halves[1]}, batch, scratch);
-    (tree ? tree_ns : hierarchy_ns) = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
-  }
-  choice_->built(half, building);
-  choice_->compared(half, tree_ns, hierarchy_ns, static_cast<double>(building));
+  const auto tree = [&](std::span<const std::uint32_t> some) {
+    return ask_tree(queries, answers, some, state, batch, scratch);
+  };
+  const auto hierarchy = [&](std::span<const std::uint32_t> some) {
+    ask_hierarchy(queries, answers, some, batch, scratch);
+  };
+  if (!choice_)
+    hierarchy(which);
+  else if (always_)
+    tree(which);
+  else
+    fas::ask_by_choice(*choice_, which, batch.halves, tree, hierarchy);
 }
 
 template <class Query, class Answer>
@@ -186,7 +166,7 @@ void ClassTracer::ask_beams(std::span<const Query> queries, std::span<Answer> an
 }
 
 bool ClassTracer::place(const NearestQuery& query, fas::HyperTree::Query& out, double& depth) const {
-  if (!from_apex_) return place_toward(query.ray, query.hi, out, depth);
+  if (!from_apex_) return place_toward(query.ray, query.lo, query.hi, out, depth);
   const Vec3 &o = query.ray.origin, &d = query.ray.direction;
   const fas::Point& apex = flat_->view().apex;
   if (!(o.x == apex[0] && o.y == apex[1] && o.z == apex[2] && max_abs(d) > 0 && is_finite(d))) return false;
@@ -197,15 +177,19 @@ bool ClassTracer::place(const NearestQuery& query, fas::HyperTree::Query& out, d
 }
 
 bool ClassTracer::place(const OcclusionQuery& query, fas::HyperTree::Query& out, double& depth) const {
-  return place_toward(query.ray, query.hi, out, depth);
+  return place_toward(query.ray, query.lo, query.hi, out, depth);
 }
 
-bool ClassTracer::place_toward(const Ray& ray, double hi, fas::HyperTree::Query& out, double& depth) const {
+bool ClassTracer::place_toward(const Ray& ray, double lo, double hi, fas::HyperTree::Query& out,
+                               double& depth) const {
   const Vec3 &o = ray.origin, &d = ray.direction;
   const double origin[3] = {o.x, o.y, o.z}, direction[3] = {d.x, d.y, d.z};
   if (!fas::aims_at(flat_->view(), origin, direction, hi)) return false;
   out = flat_->toward(origin);
-  depth = out.depth;
+  // Where t = lo: what is farther from the light than that is of no interest. (The rounding of this sum of
+  // two is well within what quantised() allows for.)
+  const bool parallel = flat_->view().kind == fas::View::Kind::kParallel;
+  depth = out.depth - lo * (parallel ? 1 : std::fabs(direction[out.face >> 1]));
   return true;
 }
 
@@ -265,7 +249,8 @@ void ClassTracer::trace_outside(std::span<const Query> queries, std::span<Answer
   for (std::size_t first = 0; first < which.size(); first += RayPack::kMost) {
     const int n = static_cast<int>(std::min<std::size_t>(RayPack::kMost, which.size() - first));
     load(tracer, queries, answers, which.data() + first, n);
-    answer(tracer, answers, try_unbounded(tracer, world, queries));
+    try_unbounded(tracer, world, queries);
+    answer(tracer, answers);
   }
 }
 
@@ -290,7 +275,7 @@ void ClassTracer::trace_groups(std::span<const Query> queries, std::span<Answer>
         ++probe.count;
       }
       load(tracer, queries, answers, places.data(), probe.count);
-      RayPack::Mask stopped = try_unbounded(tracer, world, queries);
+      const RayPack::Mask known = try_unbounded(tracer, world, queries);
       if constexpr (std::is_same_v<Query, NearestQuery>) {
         const auto improve = [&](std::uint32_t candidate, std::uint64_t mask) {
           return tracer.improve(bounded + candidate, mask);
@@ -303,14 +288,14 @@ void ClassTracer::trace_groups(std::span<const Query> queries, std::span<Answer>
           fas::nearest_toward_in_group(*flat_, state, *group.leaf, group.any, probe, depths.data(), improve);
         }
       } else {
-        stopped |= fas::occluded_in_group(
-            *flat_, state, *group.leaf, group.any, probe, depths.data(),
-            [&](std::uint32_t candidate, std::uint64_t mask) {
-              return try_leaf(tracer, queries, bounded + candidate, mask & ~stopped) | (mask & stopped);
-            });
+        fas::occluded_in_group(*flat_, state, *group.leaf, group.any, probe, depths.data(),
+                               [&](std::uint32_t candidate, std::uint64_t mask) {
+                                 return try_leaf(tracer, queries, bounded + candidate, mask & ~known) |
+                                        (mask & known);
+                               });
       }
       tracer.count_bounds(tracer.pack().all());
-      answer(tracer, answers, stopped);
+      answer(tracer, answers);
     }
   }
 }

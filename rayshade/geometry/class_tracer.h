@@ -9,6 +9,7 @@
 
 #include "fas/batch.h"
 #include "fas/beam_tree.h"
+#include "fas/choice.h"
 #include "rayshade/geometry/intersector.h"
 #include "rayshade/geometry/intersector_report.h"
 
@@ -85,7 +86,7 @@ class ClassTracer {
                     const Batch& batch, fas::ThreadState& state, PackTracer& tracer) const;
   bool place(const NearestQuery& query, fas::HyperTree::Query& out, double& depth) const;
   bool place(const OcclusionQuery& query, fas::HyperTree::Query& out, double& depth) const;
-  bool place_toward(const Ray& ray, double hi, fas::HyperTree::Query& out, double& depth) const;
+  bool place_toward(const Ray& ray, double lo, double hi, fas::HyperTree::Query& out, double& depth) const;
 
   const CompiledScene& scene_;
   std::unique_ptr<fas::HyperTree> flat_;

@@ -206,6 +206,7 @@ void ask_world(const CompiledScene& scene, const OcclusionQuery& query, Occlusio
   TraceContext context(scene, scratch);
   context.cut = cut;
   answer.occluded = group_occludes(context, 0, query.ray, query.lo, query.hi, query.mask);
+  answer.others = query.mask != kAnyOpacity;  // who knows
   answer.tests = context.tests;
   answer.bounds_tests = context.bounds_tests;
 }

@@ -28,7 +28,7 @@ struct NearestQuery {
   Opacity mask = kAnyOpacity;  ///< leaves to consider
   RayKind kind = RayKind::kEye;
   std::uint16_t depth = 0;
-  std::uint32_t light = kNone;  ///< shadow rays: which light
+  std::uint32_t light = kNone;  ///< shadow rays: which light; `hi` is then no farther than it
 };
 
 struct NearestAnswer {
@@ -43,11 +43,14 @@ struct OcclusionQuery {
   Ray ray;
   double lo = 0, hi = kFar;
   Opacity mask = kAnyOpacity;
-  std::uint32_t light = kNone;
+  std::uint32_t light = kNone;  ///< which light; `hi` is then no farther than it
 };
 
 struct OcclusionAnswer {
   bool occluded = false;
+  /// Whether there may be a hit with something outside the mask of the query, found on the way: if not, the
+  /// nearest query for the rest of the leaves would find nothing.
+  bool others = false;
   std::uint32_t tests = 0;
   std::uint32_t bounds_tests = 0;
 };

@@ -83,7 +83,8 @@ class GroupIntersector : public Intersector {
       PackTracer tracer(scene_, scratch);
       for (std::size_t n = 0; (n = run_of_one_mask(queries.subspan(i))) >= PackTracer::kFewest; i += n) {
         tracer.load(queries.subspan(i), nullptr, static_cast<int>(n));
-        tracer.answer_occluded(answers.subspan(i), occluded_in_pack(tracer));
+        occluded_in_pack(tracer);
+        tracer.answer_occluded(answers.subspan(i));
       }
     }
     for (; i < queries.size(); ++i) ask_world(scene_, queries[i], answers[i], scratch);
@@ -135,15 +136,13 @@ class GroupIntersector : public Intersector {
     tracer.answer_nearest();
   }
 
-  RayPack::Mask occluded_in_pack(PackTracer& tracer) const {
+  void occluded_in_pack(PackTracer& tracer) const {
     const Group& world = scene_.groups[0];
-    const RayPack::Mask all = tracer.pack().all();
-    RayPack::Mask stopped = 0;
-    for (std::uint32_t k = 0; k < world.count && stopped != all; ++k) {
-      const RayPack::Mask mask = near_box(tracer, k, all & ~stopped);
-      if (mask != 0) stopped |= tracer.occlude(world.first + k, mask);
+    RayPack::Mask open = tracer.pack().all();
+    for (std::uint32_t k = 0; k < world.count && open != 0; ++k) {
+      const RayPack::Mask mask = near_box(tracer, k, open);
+      if (mask != 0) open &= ~tracer.occlude(world.first + k, mask);
     }
-    return stopped;
   }
 
   const CompiledScene& scene_;

@@ -48,6 +48,7 @@ void PackTracer::load(std::span<const NearestQuery> queries, std::span<NearestAn
 
 void PackTracer::load(std::span<const OcclusionQuery> queries, const std::uint32_t* places, int count) {
   pack_.count = count;
+  stopped_ = others_ = 0;
   all_unit_ = true;
   occlusion_ = queries.data();
   for (int i = 0; i < count; ++i) {
@@ -128,8 +129,18 @@ void PackTracer::answer_nearest() {
 
 RayPack::Mask PackTracer::occlude(LeafId id, RayPack::Mask mask) {
   const Leaf& leaf = context_.scene.leaves[id];
+  const bool within = (leaf.opacity & ~opacity_) == 0;
+  if (within || leaf.kind == LeafKind::kInstance)
+    stopped_ |= occluded_by(id, leaf, opacity_, mask & ~stopped_);
+  if (opacity_ == kAnyOpacity) return mask & stopped_;
+  // An instance may hold both kinds; that it is met at all is then enough to have to look closer.
+  if (!within) others_ |= occluded_by(id, leaf, kAnyOpacity, mask & ~others_);
+  return mask & stopped_ & others_;
+}
+
+RayPack::Mask PackTracer::occluded_by(LeafId id, const Leaf& leaf, Opacity opacity, RayPack::Mask mask) {
+  if (mask == 0) return 0;
   if (vectorised(leaf)) {
-    if ((leaf.opacity & ~opacity_) != 0) return 0;
     const RayPack::Mask stopped = occlude_pack(context_.scene, leaf, pack_, mask);
     count_tests(leaf, mask, stopped);
     return stopped;
@@ -139,18 +150,17 @@ RayPack::Mask PackTracer::occlude(LeafId id, RayPack::Mask mask) {
     const auto i = static_cast<std::size_t>(std::countr_zero(left));
     const OcclusionQuery& query = occlusion_[places_[i]];
     const std::uint32_t tests = context_.tests, bounds_tests = context_.bounds_tests;
-    if (leaf_occludes(context_, id, query.ray, query.lo, query.hi, query.mask))
-      stopped |= RayPack::Mask{1} << i;
+    if (leaf_occludes(context_, id, query.ray, query.lo, query.hi, opacity)) stopped |= RayPack::Mask{1} << i;
     tests_[i] += context_.tests - tests;
     bounds_tests_[i] += context_.bounds_tests - bounds_tests;
   }
   return stopped;
 }
 
-void PackTracer::answer_occluded(std::span<OcclusionAnswer> answers, RayPack::Mask occluded) const {
+void PackTracer::answer_occluded(std::span<OcclusionAnswer> answers) const {
   for (int k = 0; k < pack_.count; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    answers[places_[i]] = {(occluded >> i & 1) != 0, tests_[i], bounds_tests_[i]};
+    answers[places_[i]] = {(stopped_ >> i & 1) != 0, (others_ >> i & 1) != 0, tests_[i], bounds_tests_[i]};
   }
 }
 

@@ -32,9 +32,11 @@ class PackTracer {
   void answer_nearest();
 
   void load(std::span<const OcclusionQuery> queries, const std::uint32_t* places, int count);
-  /// Which rays of `mask` the leaf stops.
+  /// Tests a leaf of the world; returns the rays whose answer is known now: those that are stopped, and that
+  /// have met something outside the mask of the queries, where they have one.
   RayPack::Mask occlude(LeafId leaf, RayPack::Mask mask);
-  void answer_occluded(std::span<OcclusionAnswer> answers, RayPack::Mask occluded) const;
+  /// Writes the answers of the occlusion queries loaded.
+  void answer_occluded(std::span<OcclusionAnswer> answers) const;
 
   const RayPack& pack() const { return pack_; }
   Opacity opacity() const { return opacity_; }
@@ -50,10 +52,13 @@ class PackTracer {
     return has_vector_test(leaf.kind) && !leaf.animated && (all_unit_ || leaf.kind != LeafKind::kSphere);
   }
   void count_tests(const Leaf& leaf, RayPack::Mask tested, RayPack::Mask hit);
+  /// Those of `mask` that meet the leaf between lo and hi, as far as it is within `opacity`.
+  RayPack::Mask occluded_by(LeafId id, const Leaf& leaf, Opacity opacity, RayPack::Mask mask);
 
   TraceContext context_;
   RayPack pack_;
-  RayPack::Mask found_ = 0;
+  RayPack::Mask found_ = 0;                 ///< nearest queries
+  RayPack::Mask stopped_ = 0, others_ = 0;  ///< occlusion queries
   Opacity opacity_ = kAnyOpacity;
   bool all_unit_ = true;
   const NearestQuery* nearest_ = nullptr;

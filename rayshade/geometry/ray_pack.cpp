@@ -256,8 +256,10 @@ RAYSHADE_LANES Found test_triangle(const Vec3 (&vertices)[3], const Rays& r, std
   }
   Found out = found(inside, constant(0));
   if (hn::AllFalse(D(), inside)) return out;
-  const V3 n = cross3(minus(p[1], p[0]), minus(p[2], p[1]));
+  const V3 e1 = minus(p[1], p[0]), e2 = minus(p[2], p[1]), n = cross3(e1, e2);
   const V slope = dot3(n, r.d);
+  const V known = constant(kWellKnown) * (dot3(e1, e1) * dot3(e2, e2)) * dot3(r.d, r.d);
+  unsure = hn::Or(unsure, hn::And(inside, hn::Not(hn::Ge(slope * slope, known))));
   out.t = dot3(n, minus(p[0], r.o)) / slope;
   const M within = hn::And(hn::Ge(out.t, r.lo), hn::Le(out.t, r.hi));
   const V sum = w[0] + w[1] + w[2];
@@ -285,21 +287,51 @@ RAYSHADE_LANES Found test(const UvTriangle& s, const Rays& r, std::uint64_t w) {
 
 RAYSHADE_LANES V component(const V3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
+/// Polygon::winds_around for every lane, edge by edge.
+RAYSHADE_LANES M winds_around(const Polygon& polygon, V cu, V cv) {
+  const V one = constant(1);
+  V winding = constant(0);
+  Polygon::Point2 p = polygon.outline().back();
+  M above = hn::Ge(constant(p.v), cv), right = hn::Ge(constant(p.u), cu);
+  for (const Polygon::Point2 q : polygon.outline()) {
+    const M up = hn::Ge(constant(q.v), cv), next_right = hn::Ge(constant(q.u), cu);
+    const M spans = hn::Xor(above, up);
+    if (!hn::AllFalse(D(), spans)) {
+      const V side = constant(q.u - p.u) * (cv - constant(p.v)) - constant(q.v - p.v) * (cu - constant(p.u));
+      const M other = hn::Xor(hn::Gt(side, constant(0)), up);  // the sign and the sense differ
+      const M mixed = hn::Xor(right, next_right);
+      const M crosses = hn::Or(hn::AndNot(other, mixed), hn::AndNot(mixed, right));
+      const V step = hn::IfThenElse(up, one, hn::Neg(one));
+      winding = winding + hn::IfThenElseZero(hn::And(spans, crosses), step);
+    }
+    p = q;
+    above = up;
+    right = next_right;
+  }
+  return hn::Ne(winding, constant(0));
+}
+
 RAYSHADE_LANES Found test(const Polygon& polygon, const Rays& r, std::uint64_t wanted) {
   const V3 n = constant(polygon.normal());
   const V slope = dot3(n, r.d);
   const V t = dot3(n, minus(constant(polygon.point()), r.o)) / slope;
   M hit = hn::And(hn::Ge(t, r.lo), hn::Le(t, r.hi));
   hit = hn::And(hit, squarely(t, slope, constant(1), dot3(r.d, r.d)));
+  const V u = component(r.o, polygon.u_axis()) + t * component(r.d, polygon.u_axis());
+  const V v = component(r.o, polygon.v_axis()) + t * component(r.d, polygon.v_axis());
+  hit = hn::And(hit, hn::And(hn::Ge(u, constant(polygon.lo().u)), hn::Le(u, constant(polygon.hi().u))));
+  hit = hn::And(hit, hn::And(hn::Ge(v, constant(polygon.lo().v)), hn::Le(v, constant(polygon.hi().v))));
   std::uint64_t lanes = 0;
   hn::StoreMaskBits(D(), hit, reinterpret_cast<std::uint8_t*>(&lanes));
   lanes &= wanted;
-  alignas(64) double u[8], v[8], inside[8] = {};
-  hn::Store(component(r.o, polygon.u_axis()) + t * component(r.d, polygon.u_axis()), D(), u);
-  hn::Store(component(r.o, polygon.v_axis()) + t * component(r.d, polygon.v_axis()), D(), v);
+  if (lanes == 0 || polygon.takes_every_edge())
+    return found(lanes == 0 ? hit : hn::And(hit, winds_around(polygon, u, v)), t);
+  alignas(64) double us[8], vs[8], inside[8] = {};
+  hn::Store(u, D(), us);
+  hn::Store(v, D(), vs);
   for (; lanes != 0; lanes &= lanes - 1) {
     const int i = __builtin_ctzll(lanes);
-    inside[i] = polygon.contains(u[i], v[i]) ? 1 : 0;
+    inside[i] = polygon.contains(us[i], vs[i]) ? 1 : 0;
   }
   return found(hn::Ne(hn::Load(D(), inside), constant(0)), t);
 }

@@ -14,7 +14,6 @@ double atan(double x) { return Sleef_cinz_atand1_u10purec(x); }
 double atan2(double y, double x) { return Sleef_cinz_atan2d1_u10purec(y, x); }
 double exp(double x) { return Sleef_cinz_expd1_u10purec(x); }
 double log(double x) { return Sleef_cinz_logd1_u10purec(x); }
-double pow(double x, double y) { return Sleef_cinz_powd1_u10purec(x, y); }
 double hypot(double x, double y) { return Sleef_cinz_hypotd1_u05purec(x, y); }
 double cbrt(double x) { return Sleef_cinz_cbrtd1_u10purec(x); }
 

@@ -22,17 +22,20 @@ bool any_above(const Color& c, double limit) { return c.r > limit || c.g > limit
 bool all_below(const Color& c, double limit) { return c.r < limit && c.g < limit && c.b < limit; }
 bool is_black(const Color& c) { return c.r == 0 && c.g == 0 && c.b == 0; }
 
-/// base^exponent; by multiplication for the whole exponents that highlights mostly have (relative error below
-/// exponent ulps, far below what a pixel holds).
-double power(double base, double exponent) {
+/// The exponent, where highlights are computed by multiplication: whole ones, which most are (relative error
+/// below exponent ulps, far below what a pixel holds). Otherwise 0.
+unsigned whole_exponent(double exponent) {
   constexpr int kMost = 256;
-  if (!(exponent > 0 && exponent <= kMost)) return fn::pow(base, exponent);
-  auto left = static_cast<unsigned>(exponent);
-  if (static_cast<double>(left) != exponent) return fn::pow(base, exponent);
-  double out = left & 1u ? base : 1;
-  for (double square = base; left >>= 1;) {
+  if (!(exponent > 0 && exponent <= kMost)) return 0;
+  const auto whole = static_cast<unsigned>(exponent);
+  return static_cast<double>(whole) == exponent ? whole : 0;
+}
+
+double power(double base, unsigned exponent) {
+  double out = exponent & 1u ? base : 1;
+  for (double square = base; exponent >>= 1;) {
     square *= square;
-    if (left & 1u) out *= square;
+    if (exponent & 1u) out *= square;
   }
   return out;
 }
@@ -103,11 +106,12 @@ struct RayTree::PendingLight {
   std::uint32_t shade = 0;
   std::uint32_t light = 0;
   double cosine = 0;
-  double highlight = 0;   ///< R.L
+  double highlight = 0;   ///< R.L; to be combined: to its exponent
   Color color;            ///< before shadows; after them when answered
   bool shadowed = false;  ///< a shadow ray decides
   bool blocked = false;
-  bool skipped = false;  ///< has no effect; kept only for the observer
+  bool skipped = false;     ///< has no effect; kept only for the observer
+  bool highlights = false;  ///< there is a highlight
 };
 
 /// A shadow ray on its way through transparent surfaces (shading.md 5.3).
@@ -436,9 +440,10 @@ void RayTree::answer_shadows(std::span<SampleResult> results) {
 /// `through_all`: so do all, where a question about opaque leaves has not been asked because it would cost as
 /// much.
 void RayTree::follow_transparent(bool through_all, std::span<SampleResult> results) {
-  walks_.resize(shadow_queries_.size());
+  walks_.clear();
   for (std::uint32_t i = 0; i < shadow_queries_.size(); ++i) {
-    Walk& walk = walks_[i];
+    if (!through_all && !shadow_answers_[i].others) continue;
+    Walk& walk = walks_.emplace_back();
     walk.pending = shadow_owner_[i];
     walk.query = i;
     walk.near = shadow_queries_[i].lo;
@@ -516,8 +521,37 @@ void RayTree::follow_transparent(bool through_all, std::span<SampleResult> resul
   }
 }
 
+/// Takes the highlights of the lights that arrive to their exponents, those that need a real power together.
+void RayTree::raise_highlights() {
+  power_bases_.clear();
+  power_exponents_.clear();
+  power_owner_.clear();
+  for (std::uint32_t i = 0; i < lights_.size(); ++i) {
+    PendingLight& pending = lights_[i];
+    if (pending.skipped || pending.blocked) continue;
+    const Surface& surface = *shades_[pending.shade].surface;
+    const bool front = pending.cosine > 0;
+    const double base = front ? pending.highlight : -pending.highlight;
+    const double exponent = front ? surface.specular_exponent : surface.transmitted_exponent;
+    pending.highlight = 0;
+    if (!(exponent >= kEpsilon && base > 0)) continue;
+    pending.highlights = true;
+    if (const unsigned whole = whole_exponent(exponent)) {
+      pending.highlight = power(base, whole);
+      continue;
+    }
+    power_bases_.push_back(base);
+    power_exponents_.push_back(exponent);
+    power_owner_.push_back(i);
+  }
+  if (power_owner_.empty()) return;
+  fn::pow_each(power_bases_.data(), power_exponents_.data(), power_bases_.data(), power_owner_.size());
+  for (std::size_t k = 0; k < power_owner_.size(); ++k) lights_[power_owner_[k]].highlight = power_bases_[k];
+}
+
 /// Section 2.4 steps 3 and 4, in the fixed order of the lights.
 void RayTree::combine_lights() {
+  raise_highlights();
   for (const PendingLight& pending : lights_) {
     const Shade& shade = shades_[pending.shade];
     Node& node = nodes_[shade.node];
@@ -526,16 +560,10 @@ void RayTree::combine_lights() {
     if (!pending.skipped && !pending.blocked) {
       if (pending.cosine > 0) {
         node.color += (surface.diffuse * pending.cosine) * pending.color;
-        if (surface.specular_exponent >= kEpsilon && pending.highlight > 0) {
-          node.color +=
-              (surface.specular * power(pending.highlight, surface.specular_exponent)) * pending.color;
-        }
+        if (pending.highlights) node.color += (surface.specular * pending.highlight) * pending.color;
       } else {
         node.color += (surface.translucent * -pending.cosine) * pending.color;
-        if (surface.transmitted_exponent >= kEpsilon && -pending.highlight > 0) {
-          node.color +=
-              (surface.body * power(-pending.highlight, surface.transmitted_exponent)) * pending.color;
-        }
+        if (pending.highlights) node.color += (surface.body * pending.highlight) * pending.color;
         node.color *= surface.translucency;
       }
     }

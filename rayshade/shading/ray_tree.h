@@ -116,6 +116,7 @@ class RayTree {
   void emit_lights(std::size_t first_light, std::size_t last_light, std::span<const EyeSample> samples);
   void answer_shadows(std::span<SampleResult> results);
   void follow_transparent(bool through_all, std::span<SampleResult> results);
+  void raise_highlights();
   void combine_lights();
   void spawn(Shade& shade);
   void finish(std::uint32_t node, std::span<SampleResult> results);
@@ -140,6 +141,8 @@ class RayTree {
   std::vector<OcclusionQuery> shadow_queries_;
   std::vector<OcclusionAnswer> shadow_answers_;
   std::vector<std::uint32_t> shadow_owner_;  ///< index in lights_ of each shadow query
+  std::vector<double> power_bases_, power_exponents_;
+  std::vector<std::uint32_t> power_owner_;  ///< index in lights_ of each power
   std::vector<Walk> walks_;
   std::vector<NearestQuery> walk_queries_;
   std::vector<NearestAnswer> walk_answers_;

@@ -46,8 +46,11 @@ Color wood_color(const Vec3& q) {
   const double brown_shade = 0.6 * e + 0.3;
   const double green_shade = 0.2 * e + 0.8;
   const double grain_shade = 0.15 * e + 0.85;
-  const double base = 0.5 * fn::pow(t, 0.3);
-  const double power = fn::pow(0.5 * (t + 1), 0.6);
+  double powers[2] = {t, 0.5 * (t + 1)};
+  constexpr double kExponents[2] = {0.3, 0.6};
+  fn::pow_each(powers, kExponents, powers, 2);
+  const double base = 0.5 * powers[0];
+  const double power = powers[1];
   const double brown = power * brown_shade;
   const double green = power * green_shade;
   return {(0.5 * brown + 0.35 * green) * 2 * base, base * (brown > green ? brown : green) * grain_shade,

@@ -297,7 +297,7 @@ TEST_F(ProgramTest, AbsurdSizesAreRefusedBeforeMemoryIsTaken) {
   EXPECT_EQ(huge.status, 1);
   EXPECT_THAT(huge.err, HasSubstr("memory"));
   EXPECT_EQ(go("-q --memory 1K -O a.png", kSmall).status, 1);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10 * kTimeFactor));
 }
 
 /// Starts the program on a scene that takes long, in the background.
@@ -315,11 +315,11 @@ class SignalTest : public ProgramTest {
             nullptr);
       _exit(127);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    std::this_thread::sleep_for(std::chrono::milliseconds(700 * kTimeFactor));
     return child;
   }
   int wait_for(pid_t child) {
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 300 * kTimeFactor; ++i) {
       int status = 0;
       if (waitpid(child, &status, WNOHANG) == child)
         return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -345,7 +345,7 @@ TEST_F(SignalTest, TermKeepsThePartialPictureAndExitsWith3) {
 TEST_F(SignalTest, HangUpWritesThePartialPictureAndGoesOn) {
   const pid_t child = start("-q");
   kill(child, SIGHUP);
-  for (int i = 0; i < 100 && !fs::exists(path("slow.partial.png")); ++i) {
+  for (int i = 0; i < 100 * kTimeFactor && !fs::exists(path("slow.partial.png")); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   EXPECT_TRUE(fs::exists(path("slow.partial.png")));

@@ -53,7 +53,7 @@ Listing parse(const std::string& text) {
       out.objects.push_back({word, {}, {}});
       if (!applied.empty()) out.objects.back().surface = surfaces.at(applied);
       numbers = &out.objects.back().numbers;
-    } else if (views.contains(word)) {
+    } else if (views.contains(word) || word == "sample" || word == "grid") {
       numbers = &out.view[word];
     } else if (components.contains(word)) {
       numbers = &surfaces[defining][word];
@@ -64,8 +64,6 @@ Listing parse(const std::string& text) {
       surfaces[defining];
     } else if (word == "applysurf") {
       in >> applied;
-    } else if (word == "sample" || word == "grid") {
-      numbers = &out.view[word];
     } else if (surfaces.contains(word)) {
       out.objects.back().surface = surfaces.at(word);
     } else if (word != "point" && word != "end" && word != "nojitter") {

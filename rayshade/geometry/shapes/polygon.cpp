@@ -97,14 +97,12 @@ void Polygon::make_buckets() {
 bool Polygon::winds_around(Point2 c) const {
   int winding = 0;
   const auto step = [&](Point2 p, Point2 q) {
-    const bool up = q.v >= c.v;
-    if ((p.v >= c.v) == up) return;
-    const bool right = p.u >= c.u;
-    bool crosses = right;
-    if (right != (q.u >= c.u)) {
-      crosses = ((q.u - p.u) * (c.v - p.v) - (q.v - p.v) * (c.u - p.u) > 0) == up;
-    }
-    if (crosses) winding += up ? 1 : -1;
+    // Without branches: which way they go cannot be foreseen.
+    const bool up = q.v >= c.v, right = p.u >= c.u;
+    const bool spans = (p.v >= c.v) != up, mixed = right != (q.u >= c.u);
+    const bool side = ((q.u - p.u) * (c.v - p.v) - (q.v - p.v) * (c.u - p.u) > 0) == up;
+    const bool crosses = spans & ((mixed & side) | (!mixed & right));
+    winding += static_cast<int>(crosses) * (2 * static_cast<int>(up) - 1);
   };
   if (buckets_) {
     const std::size_t k = buckets_->of(c.v);

@@ -39,11 +39,17 @@ class Polygon {
   bool contains(double u, double v) const {
     return u >= lo_.u && u <= hi_.u && v >= lo_.v && v <= hi_.v && winds_around({u, v});
   }
-
- private:
+  /// The vertices as the inside test sees them, and their box.
   struct Point2 {
     double u, v;
   };
+  const std::vector<Point2>& outline() const { return vertices_; }
+  const Point2& lo() const { return lo_; }
+  const Point2& hi() const { return hi_; }
+  /// Whether the inside test looks at every edge; otherwise only at those that a table gives.
+  bool takes_every_edge() const { return !buckets_; }
+
+ private:
   struct Buckets;
   void make_buckets();
   /// Non-zero winding number about c; "right" and "above" are closed.

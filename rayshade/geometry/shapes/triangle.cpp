@@ -36,6 +36,23 @@ double edge_function_exactly(double ax, double ay, double bx, double by) {
   return product_difference(std::ldexp(ax, sa), std::ldexp(by, sb), std::ldexp(ay, sa), std::ldexp(bx, sb));
 }
 
+double kept_within_box(const Vec3 (&p)[3], const Ray& ray, double t) {
+  double entry = -kFar, exit = kFar;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double o = ray.origin[axis], d = ray.direction[axis];
+    if (d == 0) continue;
+    const double lo = std::min(std::min(p[0][axis], p[1][axis]), p[2][axis]),
+                 hi = std::max(std::max(p[0][axis], p[1][axis]), p[2][axis]);
+    // A few units of rounding more, so that the last bits stay those of the plane.
+    const double margin = 8 * std::numeric_limits<double>::epsilon() *
+                          std::max(std::fabs(o), std::max(std::fabs(lo), std::fabs(hi))) / std::fabs(d);
+    const double a = (lo - o) / d, b = (hi - o) / d;
+    entry = std::max(entry, std::min(a, b) - margin);
+    exit = std::min(exit, std::max(a, b) + margin);
+  }
+  return t > exit ? exit : t < entry ? entry : t;
+}
+
 Vec3 Triangle::geometric_normal() const {
   const Vec3 g = normalize(cross_product());
   return negated_ ? -g : g;

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "fas/beam_tree.h"
+#include "fas/choice.h"
 #include "tests/unit/fas/random_geometry.h"
 
 namespace fas {

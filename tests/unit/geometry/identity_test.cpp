@@ -38,7 +38,7 @@ std::string difference(const NearestAnswer& a, const NearestAnswer& b) {
 
 struct Totals {
   std::uint64_t rays = 0, hits = 0, shadow_rays = 0, occluded = 0, in_trees = 0, elsewhere = 0, splits = 0,
-                in_beams = 0, beam_splits = 0;
+                in_beams = 0, beam_splits = 0, walk_hits = 0, nothing_else = 0;
 };
 
 /// One scene with its eye, its lights, and the intersectors that must agree.
@@ -188,7 +188,7 @@ class Trial {
       if (query.kind != RayKind::kShadow && dice.below(4) == 0) query.hi = dice.uniform(0, 2) * max_abs(d);
       if (dice.below(10) == 0) query.mask = dice.below(2) ? kOpaque : kTransparent;
     }
-    std::vector<NearestAnswer> truth(count), answers(count);
+    std::vector<NearestAnswer> truth(count);
     oracle_->nearest(queries, truth, oracle_scratch_);
     totals_.rays += count;
     for (const NearestAnswer& answer : truth) {
@@ -198,6 +198,12 @@ class Trial {
         found_.push_back(query.ray.at(answer.hit.t()));
       }
     }
+    return others_agree(queries, truth);
+  }
+
+  bool others_agree(const std::vector<NearestQuery>& queries, const std::vector<NearestAnswer>& truth) {
+    const std::size_t count = queries.size();
+    std::vector<NearestAnswer> answers(count);
     for (Other& other : others_) {
       if (turn_++ % other.stride != 0) continue;
       std::fill(answers.begin(), answers.end(), NearestAnswer{});
@@ -207,7 +213,8 @@ class Trial {
         if (what.empty()) continue;
         const Ray& ray = queries[i].ray;
         ADD_FAILURE() << other.name << ", seed " << seed_ << ", ray " << i << " of " << count << ": " << what
-                      << place_text(ray) << ", kind " << int(queries[i].kind) << ", lo " << queries[i].lo
+                      << place_text(ray) << ", kind " << int(queries[i].kind) << ", mask "
+                      << int(queries[i].mask) << ", light " << queries[i].light << ", lo " << queries[i].lo
                       << ", hi " << queries[i].hi;
         return false;
       }
@@ -244,11 +251,35 @@ class Trial {
     oracle_->occluded(queries, truth, oracle_scratch_);
     totals_.shadow_rays += count;
     for (const OcclusionAnswer& answer : truth) totals_.occluded += answer.occluded;
+    // The same rays on their way through what is transparent: from their start, or from behind a hit.
+    std::vector<NearestQuery> walks(count);
+    std::vector<NearestAnswer> met(count);
+    const Opacity walked = dice.below(4) ? kTransparent : kAnyOpacity;
+    for (std::size_t i = 0; i < count; ++i) {
+      const OcclusionQuery& query = queries[i];
+      walks[i].ray = query.ray;
+      walks[i].lo = query.lo;
+      walks[i].hi = query.hi;
+      walks[i].kind = RayKind::kShadow;
+      walks[i].light = query.light;
+      walks[i].mask = walked;
+    }
+    oracle_->nearest(walks, met, oracle_scratch_);
     for (Other& other : others_) {
       if (turn_++ % other.stride != 0) continue;
       std::fill(answers.begin(), answers.end(), OcclusionAnswer{});
       other.intersector->occluded(queries, answers, other.scratch);
       for (std::size_t i = 0; i < count; ++i) {
+        // Whoever says that nothing else is in the way must be right.
+        if (queries[i].mask == kOpaque && walked == kTransparent) {
+          totals_.nothing_else += !answers[i].others;
+          if (met[i].found && !answers[i].others) {
+            ADD_FAILURE() << other.name << ", seed " << seed_ << ", shadow ray " << i << " of " << count
+                          << " toward light " << queries[i].light << ": missed what is transparent"
+                          << place_text(queries[i].ray);
+            return false;
+          }
+        }
         if (answers[i].occluded == truth[i].occluded) continue;
         ADD_FAILURE() << other.name << ", seed " << seed_ << ", shadow ray " << i << " of " << count
                       << " toward light " << queries[i].light << ": " << answers[i].occluded << " instead of "
@@ -257,7 +288,13 @@ class Trial {
         return false;
       }
     }
-    return true;
+    if (!others_agree(walks, met)) return false;
+    for (std::size_t i = 0; i < count; ++i) {
+      totals_.walk_hits += met[i].found;
+      if (met[i].found && dice.below(2)) walks[i].lo = met[i].hit.t() * (1 + 1e-6) + 1e-9;
+    }
+    oracle_->nearest(walks, met, oracle_scratch_);
+    return others_agree(walks, met);
   }
 
   static std::string place_text(const Ray& ray) {
@@ -306,6 +343,8 @@ TEST(Identity, IntersectorsGiveTheSameBits) {
   EXPECT_GT(totals.splits, 0u);
   EXPECT_GT(totals.in_beams, totals.rays / 4);
   EXPECT_GT(totals.beam_splits, 1000u);
+  EXPECT_GT(totals.walk_hits, totals.shadow_rays / 16);
+  EXPECT_GT(totals.nothing_else, totals.shadow_rays / 16);
 }
 
 /// Disabled in the daily run; tests/CMakeLists.txt runs it with the label `long`.

@@ -12,24 +12,18 @@
 namespace rayshade {
 namespace {
 
-constexpr const char* kLeaves[] = {"plane 0 0 -1 .2 .1 1",
-                                   "sphere 1 .2 0 .1",
-                                   "box -1 -.6 -.3 .9 .5 .7",
-                                   "disc 1.3 .1 0 0 .3 -.2 1",
-                                   "cylinder .4 -1 -.5 -.3 1 .4 .2",
-                                   "cone .9 0 0 -1 .2 .3 .1 1",
-                                   "cone -.5 0 0 -1 .7 .3 .1 1",
-                                   "triangle -1 -1 0 1 -.8 .2 .1 1.2 -.3",
-                                   "triangle -1 -1 0 0 0 1 1 -1 0 .1 0 1 0 1 0 0 .1 1",
-                                   "poly -1 -1 0 1 -1 0 1 1 0 0 .2 0 -1 1 0",
-                                   "torus .8 .3 0 0 0 .1 .2 1",
-                                   "blob .4 1 1.2 -.5 0 0 .8 1 .6 .2 .3",
-                                   "sphere 1 0 0 0 scale 1 2 .5 rotate 1 1 0 33 translate .2 .1 0",
-                                   "triangle -1 -1 0 1 -1 0 0 1 0 rotate 1 2 3 50 scale -1 1 2",
-                                   "box -1 -1 -1 1 1 1",
-                                   "sphere 1 0 0 0",
-                                   "disc 1 0 0 0 0 0 1",
-                                   "poly -1 -1 0 1 -1 0 1 1 0 -1 1 0"};
+constexpr const char* kLeaves[] = {
+    "plane 0 0 -1 .2 .1 1", "sphere 1 .2 0 .1", "box -1 -.6 -.3 .9 .5 .7", "disc 1.3 .1 0 0 .3 -.2 1",
+    "cylinder .4 -1 -.5 -.3 1 .4 .2", "cone .9 0 0 -1 .2 .3 .1 1", "cone -.5 0 0 -1 .7 .3 .1 1",
+    "triangle -1 -1 0 1 -.8 .2 .1 1.2 -.3", "triangle -1 -1 0 0 0 1 1 -1 0 .1 0 1 0 1 0 0 .1 1",
+    "poly -1 -1 0 1 -1 0 1 1 0 0 .2 0 -1 1 0", "torus .8 .3 0 0 0 .1 .2 1",
+    "blob .4 1 1.2 -.5 0 0 .8 1 .6 .2 .3", "sphere 1 0 0 0 scale 1 2 .5 rotate 1 1 0 33 translate .2 .1 0",
+    "triangle -1 -1 0 1 -1 0 0 1 0 rotate 1 2 3 50 scale -1 1 2", "box -1 -1 -1 1 1 1", "sphere 1 0 0 0",
+    "disc 1 0 0 0 0 0 1", "poly -1 -1 0 1 -1 0 1 1 0 -1 1 0",
+    // A star that crosses itself, and one of more corners than a loop is made for.
+    "poly -1 -1 0 0 1.2 0 1 -1 0 -1 .4 0 1 .4 0",
+    "poly 1 0 0 .4 .2 0 .7 .7 0 .2 .4 0 0 1 0 -.2 .4 0 -.7 .7 0 -.4 .2 0 -1 0 0 "
+    "-.4 -.2 0 -.7 -.7 0 -.2 -.4 0 0 -1 0 .2 -.4 0 .7 -.7 0 .4 -.2 0"};
 
 struct Compiled {
   Scene scene;

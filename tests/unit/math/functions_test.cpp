@@ -4,12 +4,15 @@
 #include "rayshade/math/functions.h"
 
 #include <gtest/gtest.h>
+#include <sleef.h>
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace rayshade {
 namespace {
@@ -81,6 +84,36 @@ TEST(FunctionsTest, BitsAreTheSameEverywhere) {
     }
   }
   EXPECT_EQ(hash, 0x46619d31709f0dbbu);
+}
+
+// Whatever the width of the processor's vectors: the bits of one power.
+TEST(FunctionsTest, PowersTogetherAreThoseOneByOne) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kSpecial[] = {0,   -0.0, 1,    -1,     2,          -2,          .5,
+                                 3,   -3,   0.3,  0x1p60, 0x1p-1074,  1e308,       kInfinity,
+                                 4.8, -0.5, 1e16, 1e-9,   -kInfinity, std::nan("")};
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::uniform_int_distribution<std::size_t> pick(0, std::size(kSpecial) - 1);
+  for (std::size_t round = 0; round < 20'000; ++round) {
+    const std::size_t count = round % 37;
+    std::vector<double> x(count), y(count), out(count, -7);
+    for (std::size_t i = 0; i < count; ++i) {
+      x[i] = round % 3 == 0 ? kSpecial[pick(random)] : unit(random);
+      y[i] = round % 3 == 1 ? 50 * unit(random) : kSpecial[pick(random)];
+    }
+    fn::pow_each(x.data(), y.data(), out.data(), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double one = fn::pow(x[i], y[i]), scalar = Sleef_cinz_powd1_u10purec(x[i], y[i]);
+      if (std::isnan(scalar)) {
+        ASSERT_TRUE(std::isnan(one) && std::isnan(out[i])) << x[i] << " to the " << y[i];
+        continue;
+      }
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(out[i]), std::bit_cast<std::uint64_t>(scalar))
+          << x[i] << " to the " << y[i] << ", " << i << " of " << count;
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(one), std::bit_cast<std::uint64_t>(scalar));
+    }
+  }
 }
 
 }  // namespace
