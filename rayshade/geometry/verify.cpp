@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <mutex>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
