@@ -2,6 +2,7 @@
 #include "rayshade/geometry/shapes/triangle.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "rayshade/geometry/roots/quadratic.h"
@@ -37,7 +38,7 @@ double edge_function_exactly(double ax, double ay, double bx, double by) {
 }
 
 double kept_within_box(const Vec3 (&p)[3], const Ray& ray, double t) {
-  double entry = -kFar, exit = kFar;
+  double entry = -std::numeric_limits<double>::infinity(), exit = -entry;
   for (int axis = 0; axis < 3; ++axis) {
     const double o = ray.origin[axis], d = ray.direction[axis];
     if (d == 0) continue;
