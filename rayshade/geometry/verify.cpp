@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <mutex>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -39,7 +41,10 @@ bool same_bits(double a, double b) {
 }
 
 bool same(const NearestAnswer& a, const NearestAnswer& b) { return same_answer(a, b); }
-bool same(const OcclusionAnswer& a, const OcclusionAnswer& b) { return a.occluded == b.occluded; }
+/// `b` is the truth: whoever says that there is nothing else in the way must be right.
+bool same(const OcclusionAnswer& a, const OcclusionAnswer& b) {
+  return a.occluded == b.occluded && (a.others || !b.others);
+}
 
 /// As exact as it is and as people read it.
 std::string text_of(double x) { return fmt::format("{:a} ({:.17g})", x, x); }
@@ -58,7 +63,8 @@ std::string text_of(const CompiledScene& scene, const NearestAnswer& answer) {
   return out;
 }
 std::string text_of(const CompiledScene& /*scene*/, const OcclusionAnswer& answer) {
-  return answer.occluded ? "occluded" : "free";
+  return fmt::format("{}, {} outside of these leaves", answer.occluded ? "occluded" : "free",
+                     answer.others ? "perhaps something" : "nothing");
 }
 
 std::string head_of(const NearestQuery& query) {
@@ -114,6 +120,7 @@ struct VerifyingIntersector::Slot {
   std::vector<std::uint32_t> which;
   std::pair<std::vector<NearestQuery>, std::vector<NearestAnswer>> nearest;
   std::pair<std::vector<OcclusionQuery>, std::vector<OcclusionAnswer>> occlusion;
+  std::vector<std::uint32_t> denying;  ///< occlusion queries whose answer denies OcclusionAnswer::others
 
   auto& room(const NearestQuery* /*kind*/) { return nearest; }
   auto& room(const OcclusionQuery* /*kind*/) { return occlusion; }
@@ -182,6 +189,28 @@ VerifyCounts VerifyingIntersector::counts() const {
   return {shared_->nearest, shared_->occlusion, shared_->differing};
 }
 
+/// Occlusion of the chosen queries, and of those whose answer denies that anything outside the mask is in the
+/// way, whether there is.
+void VerifyingIntersector::ask_oracle(std::span<const OcclusionAnswer> answers, Slot& slot) const {
+  auto& [asked, truth] = slot.occlusion;
+  oracle_->occluded(asked, truth, slot.scratch);
+  auto& [rest, found] = slot.nearest;
+  rest.clear();
+  slot.denying.clear();
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    const OcclusionQuery& query = asked[k];
+    const OcclusionAnswer& answer = answers[slot.which[k]];
+    truth[k].others = answer.others;  // may be: nothing to check
+    if (answer.others || query.mask == kAnyOpacity) continue;
+    const auto others = static_cast<Opacity>(kAnyOpacity & ~query.mask);
+    rest.push_back({query.ray, query.lo, query.hi, others, RayKind::kShadow, 0, query.light});
+    slot.denying.push_back(static_cast<std::uint32_t>(k));
+  }
+  found.resize(rest.size());
+  oracle_->nearest(rest, found, slot.scratch);
+  for (std::size_t i = 0; i < rest.size(); ++i) truth[slot.denying[i]].others = found[i].found;
+}
+
 template <class Query, class Answer>
 void VerifyingIntersector::verify(std::span<const Query> queries, std::span<const Answer> answers,
                                   const TraceScratch& scratch) const {
@@ -201,7 +230,7 @@ void VerifyingIntersector::verify(std::span<const Query> queries, std::span<cons
   if constexpr (kNearest)
     oracle_->nearest(asked, truth, slot.scratch);
   else
-    oracle_->occluded(asked, truth, slot.scratch);
+    ask_oracle(answers, slot);
   (kNearest ? shared_->nearest : shared_->occlusion) += asked.size();
   for (std::size_t k = 0; k < asked.size(); ++k) {
     const std::uint32_t i = slot.which[k];

@@ -65,6 +65,7 @@ class VerifyingIntersector final : public Intersector {
   struct Slot;
   struct Shared;
   class Lease;
+  void ask_oracle(std::span<const OcclusionAnswer> answers, Slot& slot) const;
   template <class Query, class Answer>
   void verify(std::span<const Query> queries, std::span<const Answer> answers,
               const TraceScratch& scratch) const;

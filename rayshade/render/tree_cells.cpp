@@ -2,6 +2,7 @@
 #include "rayshade/render/tree_cells.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace rayshade {

@@ -83,6 +83,50 @@ TEST(Verify, EveryLieAboutOcclusionIsCaught) {
       << checked.texts[0];
 }
 
+/// Denies that anything outside of the mask is in the way.
+class Denier final : public Intersector {
+ public:
+  explicit Denier(const CompiledScene& scene) : inner_(make_hierarchy(scene)) {}
+  void nearest(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
+               TraceScratch& scratch) const override {
+    inner_->nearest(queries, answers, scratch);
+  }
+  void occluded(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
+                TraceScratch& scratch) const override {
+    inner_->occluded(queries, answers, scratch);
+    for (OcclusionAnswer& answer : answers) answer.others = false;
+  }
+
+ private:
+  std::unique_ptr<Intersector> inner_;
+};
+
+TEST(Verify, WhoeverDeniesOtherObjectsMustBeRight) {
+  RandomScene random(79);
+  random.fill(40, 4);
+  const auto scene = random.b.compile();
+  Queries queries(random, 1000);
+  for (OcclusionQuery& query : queries.occlusion) query.mask = kOpaque;
+  const auto oracle = make_brute_force(*scene);
+  std::uint64_t wrong = 0;
+  for (const OcclusionQuery& query : queries.occlusion) {
+    TraceScratch scratch;
+    wrong += test::nearest(*oracle, query.ray, scratch, query.lo, query.hi, kTransparent).found;
+  }
+  TraceScratch scratch;
+  std::string last;
+  const VerifyingIntersector denied(*scene, std::make_unique<Denier>(*scene),
+                                    {1, {}, [&](const std::string& text) { last = text; }});
+  queries.ask(denied, scratch);
+  EXPECT_GT(wrong, 10u);
+  EXPECT_EQ(denied.counts().differing, wrong);
+  EXPECT_NE(last.find("nothing outside of these leaves"), std::string::npos) << last;
+  TraceScratch honest_scratch;
+  const VerifyingIntersector honest(*scene, make_hierarchy(*scene), {});
+  queries.ask(honest, honest_scratch);
+  EXPECT_EQ(honest.counts().differing, 0u);
+}
+
 TEST(Verify, AShareIsThatShareOfTheQueriesWhateverTheSpans) {
   const Checked tenth = check(1, 1, .1);
   EXPECT_NEAR(static_cast<double>(tenth.counts.nearest), 100, 35);
