@@ -46,8 +46,15 @@ class Choice {
 
   /// After rays went through the tree, `ns` of which it took to make nodes.
   void built(std::size_t rays, std::uint64_t ns) {
-    add(tree_rays_, rays);
+    add(all_tree_rays_, rays);
     add(building_, ns);
+    const std::uint64_t n = add(tree_rays_, rays);
+    if (n < kWindow) return;
+    building_per_ray_.store(
+        static_cast<double>(building_.load(std::memory_order_relaxed)) / static_cast<double>(n),
+        std::memory_order_relaxed);
+    tree_rays_.store(0, std::memory_order_relaxed);
+    building_.store(0, std::memory_order_relaxed);
   }
   /// Whether the hierarchy comes first in the next comparison: whoever does finds the caches cold.
   bool hierarchy_first() const { return turn_.load(std::memory_order_relaxed) / 8 % 2 != 0; }
@@ -65,9 +72,11 @@ class Choice {
       return static_cast<double>(a.load(std::memory_order_relaxed)) /
              static_cast<double>(std::max<std::uint64_t>(b.load(std::memory_order_relaxed), 1));
     };
-    const double growth =
-        std::sqrt(std::min(1.0, static_cast<double>(tree_rays_.load(std::memory_order_relaxed)) / expected_));
-    const double plain = share(all_hierarchy_ns_, all_), made = growth * share(building_, tree_rays_);
+    const double growth = std::sqrt(
+        std::min(1.0, static_cast<double>(all_tree_rays_.load(std::memory_order_relaxed)) / expected_));
+    const double latest = building_per_ray_.load(std::memory_order_relaxed);
+    const double plain = share(all_hierarchy_ns_, all_),
+                 made = growth * (latest >= 0 ? latest : share(building_, tree_rays_));
     const bool hopeless = made > 3 * plain;
     if (!hopeless && all_.load(std::memory_order_relaxed) < kTrial) return;
     const bool quiet = compared_.load(std::memory_order_relaxed) >= kTrial;
@@ -76,9 +85,10 @@ class Choice {
     const std::uint64_t pause = pause_.load(std::memory_order_relaxed);
     again_.store(seen_.load(std::memory_order_relaxed) + pause, std::memory_order_relaxed);
     pause_.store(4 * pause, std::memory_order_relaxed);
-    for (std::atomic<std::uint64_t>* sum :
-         {&compared_, &tree_ns_, &hierarchy_ns_, &tree_rays_, &building_, &all_, &all_hierarchy_ns_})
+    for (std::atomic<std::uint64_t>* sum : {&compared_, &tree_ns_, &hierarchy_ns_, &tree_rays_, &building_,
+                                            &all_tree_rays_, &all_, &all_hierarchy_ns_})
       sum->store(0, std::memory_order_relaxed);
+    building_per_ray_.store(-1, std::memory_order_relaxed);
     tree_mode_.store(false, std::memory_order_relaxed);
   }
 
@@ -89,13 +99,16 @@ class Choice {
   static constexpr double kRaysPerPrimitive = 6;
   /// Rays compared before the first judgement.
   static constexpr std::uint64_t kTrial = 1024;
+  /// Rays through the tree over which the cost of building is averaged: what has been paid is paid.
+  static constexpr std::uint64_t kWindow = 8192;
   /// Time through a tree by that through the hierarchy, as long as nothing better is known.
   static constexpr double kGuess = 0.7;
   double expected_;
   std::atomic<bool> tree_mode_{true};
+  std::atomic<double> building_per_ray_{-1};  ///< of the latest window
   std::atomic<std::uint32_t> turn_{0};
   std::atomic<std::uint64_t> compared_{0}, tree_ns_{0}, hierarchy_ns_{0}, tree_rays_{0}, building_{0},
-      all_{0}, all_hierarchy_ns_{0};
+      all_tree_rays_{0}, all_{0}, all_hierarchy_ns_{0};
   std::atomic<std::uint64_t> seen_{0}, again_{0}, pause_{std::uint64_t{1} << 16};
 };
 
