@@ -140,11 +140,12 @@ std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bo
   return out;
 }
 
-std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, const RunSummary& run) {
+std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, const RunSummary& run,
+                            const std::function<void(JsonWriter&)>& more) {
   JsonWriter j;
   const ShadingCounts& c = s.shading;
   j.begin_object();
-  j.value("program", "rayshade").value("version", run.version).value("scene", run.scene);
+  j.value("program", run.program).value("version", run.version).value("scene", run.scene);
   j.value("scene_hash", run.scene_hash).value("outcome", run.outcome);
   j.begin_object("settings");
   j.value("width", r.width).value("height", r.height);
@@ -208,6 +209,7 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
   j.value("cpu_seconds", run.total_cpu_seconds).value("wall_seconds", run.wall_seconds);
   j.value("peak_memory_bytes", run.peak_memory);
   j.end_object();
+  if (more) more(j);
   j.end_object();
   return j.text();
 }

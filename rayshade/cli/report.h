@@ -3,6 +3,7 @@
 // numbers.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "rayshade/render/renderer.h"
@@ -10,8 +11,11 @@
 
 namespace rayshade {
 
+class JsonWriter;
+
 /// How a run ended; `--stats` records it.
 struct RunSummary {
+  std::string program = "rayshade";
   std::string scene;  ///< name as given
   std::string scene_hash;
   std::string version;
@@ -26,8 +30,8 @@ struct RunSummary {
 std::string settings_text(const RenderSettings& settings, const Renderer& renderer);
 /// The statistics table; `verbose` adds what was skipped and where time went.
 std::string statistics_text(const RenderStatistics& statistics, const RunSummary& run, bool verbose);
-/// All of it as one JSON object.
+/// All of it as one JSON object; `more` writes further members.
 std::string statistics_json(const RenderStatistics& statistics, const RenderSettings& settings,
-                            const RunSummary& run);
+                            const RunSummary& run, const std::function<void(JsonWriter&)>& more = {});
 
 }  // namespace rayshade
