@@ -25,8 +25,9 @@ struct EnginePlan {
 class Engine {
  public:
   virtual ~Engine() = default;
-  /// What the program calls itself in messages.
-  virtual const char* program() const = 0;
+  /// Which options the program has, and what it calls itself in messages.
+  virtual Program kind() const = 0;
+  const char* program() const { return program_name(kind()); }
   /// Every file that the scene names is read through it.
   virtual Provider& provider() = 0;
   /// Processes of this job on this machine: threads and memory are divided by it (rule 19).
@@ -47,7 +48,7 @@ class Engine {
 /// The threads of this process.
 class LocalEngine : public Engine {
  public:
-  const char* program() const override { return "rayshade"; }
+  Program kind() const override { return Program::kRayshade; }
   Provider& provider() override { return provider_; }
 
  private:

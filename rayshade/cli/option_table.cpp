@@ -447,9 +447,14 @@ std::vector<OptionSpec> make_table() {
 
 }  // namespace
 
-const std::vector<OptionSpec>& option_table() {
+const std::vector<OptionSpec>& option_table(Program program) {
   static const std::vector<OptionSpec> table = make_table();
-  return table;
+  static const std::vector<OptionSpec> with_cluster = [] {
+    std::vector<OptionSpec> all = cluster_option_table();
+    all.insert(all.begin(), table.begin(), table.end());
+    return all;
+  }();
+  return program == Program::kPafas ? with_cluster : table;
 }
 
 }  // namespace rayshade

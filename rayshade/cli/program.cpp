@@ -91,7 +91,7 @@ class Run {
   }
 
  private:
-  std::string scene_name() const { return options_.input.empty() ? "-" : options_.input; }
+  std::string scene_name() const { return options_.scene(); }
   bool chatty() const { return report_.get() != stderr || !options_.quiet; }
 
   void open_report() {
@@ -122,16 +122,7 @@ class Run {
 
   bool read_scene() {
     const Clock::time_point start = Clock::now();
-    ParseOptions parse;
-    parse.preprocessing = options_.preprocess == Preprocess::kNever ? Preprocessing::kNever
-                          : options_.preprocessor_arguments         ? Preprocessing::kAlways
-                                                                    : Preprocessing::kAuto;
-    if (options_.preprocessor_arguments) {
-      parse.preprocessor_arguments = split_arguments(*options_.preprocessor_arguments);
-    }
-    parse.flip_normals = options_.settings.flip_normals;
-    parse.verbose = options_.verbose;
-    ParseResult result = parse_scene(engine_.provider(), scene_name(), parse);
+    ParseResult result = parse_scene(engine_.provider(), scene_name(), parsing_options(options_));
     const bool color = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
     const bool quiet = options_.quiet || result.scene.settings.quiet;
     for (const std::string& line : result.prints) fmt::print(stderr, "{}", line);
@@ -146,21 +137,10 @@ class Run {
   }
 
   RenderOptions render_options() const {
-    RenderOptions out;
-    const int share = engine_.machine_share();
-    out.threads = options_.threads > 0 ? options_.threads : std::max(1, available_threads() / share);
-    out.block_side = options_.block;
-    out.intersector = options_.intersector;
-    out.fas_memory = (options_.fas_memory > 0 ? options_.fas_memory : available_memory() / 4) /
-                     static_cast<std::uint64_t>(share);
-    out.fas_split = options_.fas_split;
-    out.verify = options_.verify;
+    RenderOptions out = rendering_options(options_, engine_.machine_share());
     out.report_difference = [this](const std::string& text) {
       fmt::print(stderr, "{}: error: {}", engine_.program(), text);
     };
-    out.layers = options_.layers.has_value();
-    out.cost = options_.cost_map.has_value();
-    out.sample_map = options_.sample_map;
     engine_.adjust(out);
     return out;
   }
@@ -334,19 +314,19 @@ int guarded(Run& run) {
 
 int run_program(const std::vector<std::string>& arguments, Engine& engine) {
   try {
-    const Options options = parse_options(arguments);
+    const Options options = parse_options(arguments, engine.kind());
     switch (options.action) {
       case Action::kHelp:
-        fmt::print("{}", help_text());
+        fmt::print("{}", help_text(engine.kind()));
         return kComplete;
       case Action::kVersion:
         fmt::print("{} {}\n", engine.program(), RAYSHADE_VERSION);
         return kComplete;
       case Action::kManOptions:
-        fmt::print("{}", man_options());
+        fmt::print("{}", man_options(engine.kind()));
         return kComplete;
       case Action::kCompletion:
-        fmt::print("{}", bash_completion());
+        fmt::print("{}", bash_completion(engine.kind()));
         return kComplete;
       default:
         break;
