@@ -30,9 +30,32 @@ int mistaken_singletons(int size) {
   return 0;
 }
 
+/// Where nobody has started MPI, what needs none does without.
+bool only_tells_about_itself(const std::vector<std::string>& arguments) {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"})
+    if (std::getenv(name)) return false;
+  try {
+    using rayshade::Action;
+    const Action action = rayshade::parse_options(arguments, rayshade::Program::kPafas).action;
+    return action == Action::kHelp || action == Action::kVersion || action == Action::kManOptions ||
+           action == Action::kCompletion;
+  } catch (const rayshade::UsageError&) {
+    return true;
+  }
+}
+
+class InformationEngine final : public rayshade::LocalEngine {
+ public:
+  rayshade::Program kind() const override { return rayshade::Program::kPafas; }
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (const std::vector<std::string> words(argv + 1, argv + argc); only_tells_about_itself(words)) {
+    InformationEngine engine;
+    return rayshade::run_program(words, engine);
+  }
   pafas::MpiTransport transport(&argc, &argv);
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   int code = rayshade::kUsage;

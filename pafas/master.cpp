@@ -144,7 +144,7 @@ void Master::greet(int rank, const Hello& hello) {
   Plan plan = plan_;
   plan.refusal = refusal_of(hello);
   if (over_) {
-    tell(rank, Leave{});
+    tell(rank, Leave{report_.lost_ranks > 0});
     return;
   }
   if (!plan.refusal.empty())
@@ -321,9 +321,10 @@ void Master::give_work() {
 void Master::dismiss() {
   if (over_) return;
   over_ = true;
+  if (report_.lost_ranks > 0) transport_.note_losses();
   for (int i = 1; i < transport_.size(); ++i) {
     const Phase phase = ranks_[static_cast<std::size_t>(i)].phase;
-    if (phase != Phase::kFailed && phase != Phase::kGone) tell(i, Leave{});
+    if (phase != Phase::kFailed && phase != Phase::kGone) tell(i, Leave{report_.lost_ranks > 0});
   }
 }
 

@@ -124,6 +124,7 @@ struct Heard {
 
 struct Leave {
   static constexpr Kind kKind = Kind::kLeave;
+  bool losses = false;  ///< ranks have died: MPI may not end by itself
 };
 
 struct Report {
@@ -176,7 +177,9 @@ void fields(Archive& a, Alive& m) {
 template <class Archive>
 void fields(Archive&, Heard&) {}
 template <class Archive>
-void fields(Archive&, Leave&) {}
+void fields(Archive& a, Leave& m) {
+  a(m.losses);
+}
 template <class Archive>
 void fields(Archive& a, Report& m) {
   a(m.report);

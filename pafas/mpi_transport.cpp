@@ -59,7 +59,7 @@ MpiTransport::MpiTransport(int* argc, char*** argv) {
 MpiTransport::~MpiTransport() {
   g_exit_code = exit_code_;
   std::signal(SIGALRM, leave);
-  alarm(kPatience);
+  alarm(patience_);
   MPI_Finalize();
   alarm(0);
 }

@@ -24,16 +24,17 @@ class MpiTransport final : public Transport {
   void send(int to, std::string bytes) override;
   std::optional<Message> receive() override;
   bool sent(int to) override;
+  void note_losses() override { patience_ = 1; }
   void set_exit_code(int code) { exit_code_ = code; }
   /// Ranks of this job on this machine, this one included, as the starter tells.
   int ranks_here() const { return ranks_here_; }
 
  private:
-  static constexpr unsigned kPatience = 5;
   struct Sending;
   struct Receiving;
   void clear_sent();
 
+  unsigned patience_ = 10;  ///< seconds for the end of MPI
   int rank_ = 0, size_ = 1, ranks_here_ = 1, exit_code_ = 0;
   std::deque<std::unique_ptr<Sending>> sending_;
   std::deque<std::unique_ptr<Receiving>> receiving_;

@@ -23,6 +23,8 @@ class Transport {
   virtual std::optional<Message> receive() = 0;
   /// Whether all that was sent to `to` has left this rank.
   virtual bool sent(int to) = 0;
+  /// Ranks have died: the end is not to be waited for long.
+  virtual void note_losses() {}
 };
 
 }  // namespace pafas

@@ -143,6 +143,7 @@ void Worker::handle(const Message& message) {
       return;
     case Kind::kLeave:
       leaving_ = true;
+      if (unpack<Leave>(message.bytes).losses) transport_.note_losses();
       return;
     case Kind::kHeard:
       return;
