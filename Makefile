@@ -16,7 +16,7 @@ LINT_PACKAGES  := clang clang-tidy clang-format libclang-rt-14-dev
 BENCH_CMAKE := cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DRAYSHADE_BENCH=ON
 
 .DEFAULT_GOAL := help
-.PHONY: help run build check check-long asan tsan bench bench-fas bench-scenes check-clusters install package lint format fuzz clean \
+.PHONY: help run build check check-long asan tsan bench bench-fas bench-scenes bench-paper check-clusters install package lint format fuzz clean \
         packages test-packages bench-packages lint-packages
 
 help: ## list the targets
@@ -87,6 +87,12 @@ bench-scenes: bench-packages ## time the procedural databases as whole programs:
 	$(BENCH_CMAKE)
 	cmake --build $(BUILD) -j $(JOBS) --target rayshade spd compare_pictures
 	bench/run-scenes $(BUILD) $(WRITE)
+
+bench-paper: bench-packages ## the tables of the paper: speed-up, memory, samples, on up to 16 ranks
+	$(call need,python3)
+	$(BENCH_CMAKE)
+	cmake --build $(BUILD) -j $(JOBS) --target rayshade pafas spd
+	bench/run-paper $(BUILD) $(WRITE)
 
 install: build ## install programs, scenes, manuals and completion under PREFIX
 	$(SUDO) cmake --install $(BUILD) --prefix $(PREFIX)
