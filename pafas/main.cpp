@@ -2,7 +2,9 @@
 // One program for all ranks: rank 0 is the master, the others are slaves.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -19,21 +21,40 @@ int number_in(const char* name) {
   return value ? std::atoi(value) : 0;
 }
 
+bool any_of(std::initializer_list<const char*> names) {
+  return std::any_of(names.begin(), names.end(),
+                     [](const char* name) { return std::getenv(name) != nullptr; });
+}
+
 /// A starter that does not speak this MPI's language starts as many single processes, each of which would
-/// render the whole picture. How many it meant to start; 0: this is no such process.
-int mistaken_singletons(int size) {
-  if (size > 1) return 0;
+/// render the whole picture. How many srun means to start without a word to any MPI; 0: it is not so.
+int tasks_without_mpi() {
+  if (!any_of({"SLURM_STEP_ID"}) || any_of({"PMIX_RANK", "PMI_RANK", "PMI_FD", "OMPI_COMM_WORLD_SIZE"}))
+    return 0;
+  const int step = number_in("SLURM_STEP_NUM_TASKS");
+  return step > 0 ? step : number_in("SLURM_NTASKS");
+}
+
+/// The same, once MPI has said that this process is alone.
+int meant_by_starter() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"})
     if (const int meant = number_in(name); meant > 1) return meant;
-  // In a batch script, outside of srun, Slurm's number is that of the whole job.
-  if (std::getenv("SLURM_STEP_ID") && number_in("SLURM_NTASKS") > 1) return number_in("SLURM_NTASKS");
   return 0;
+}
+
+int refuse(int meant) {
+  fmt::print(
+      stderr,
+      "pafas: started as one of {} processes, but MPI knows of this one only: each would render the whole "
+      "picture.\nStart it with the mpirun of its MPI, or with srun --mpi=pmix or --mpi=pmi2, whichever "
+      "that MPI was built for.\n",
+      meant);
+  return rayshade::kUsage;
 }
 
 /// Where nobody has started MPI, what needs none does without.
 bool only_tells_about_itself(const std::vector<std::string>& arguments) {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"})
-    if (std::getenv(name)) return false;
+  if (any_of({"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"})) return false;
   try {
     using rayshade::Action;
     const Action action = rayshade::parse_options(arguments, rayshade::Program::kPafas).action;
@@ -56,15 +77,12 @@ int main(int argc, char** argv) {
     InformationEngine engine;
     return rayshade::run_program(words, engine);
   }
+  if (const int meant = tasks_without_mpi(); meant > 1) return refuse(meant);
   pafas::MpiTransport transport(&argc, &argv);
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   int code = rayshade::kUsage;
-  if (const int meant = mistaken_singletons(transport.size()); meant > 1) {
-    fmt::print(stderr,
-               "pafas: started as one of {} processes, but MPI knows of this one only: each would render the "
-               "whole picture.\nStart it with the mpirun of its MPI, or with srun --mpi=pmix or --mpi=pmi2, "
-               "whichever that MPI was built for.\n",
-               meant);
+  if (const int meant = meant_by_starter(); transport.size() == 1 && meant > 1) {
+    code = refuse(meant);
   } else if (transport.rank() == 0) {
     pafas::Master master(transport, {RAYSHADE_VERSION, arguments, transport.ranks_here()});
     code = rayshade::run_program(arguments, master);
