@@ -142,7 +142,7 @@ void Journal::open_and_lock() {
     if (!lock(file_)) {
       close(file_);
       file_ = -1;
-      throw JournalError(
+      throw JournalBusy(
           fmt::format("another process is rendering this picture: its journal '{}' is locked", path_));
     }
     if (fstat(file_, &opened) == 0 && stat(path_.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&

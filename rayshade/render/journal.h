@@ -37,9 +37,13 @@ struct JournalIdentity {
 /// The first thing that changed, for people ("samples was 2, is now 4"); empty where nothing did.
 std::string first_difference(const JournalIdentity& was, const JournalIdentity& now);
 
-/// The journal cannot be opened, or belongs to a process that is running.
+/// The journal cannot be opened.
 struct JournalError : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+/// It belongs to a process that is running.
+struct JournalBusy : JournalError {
+  using JournalError::JournalError;
 };
 
 class Journal {
