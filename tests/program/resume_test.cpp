@@ -76,7 +76,9 @@ class ResumeTest : public ::testing::Test {
       // Every block that reached the journal is done; a block's record has 16 x 16 x 4 bytes and a head.
       const auto resumed = stats()["resumed"]["blocks"].get<std::uint64_t>();
       EXPECT_EQ(resumed + stats()["sampling"]["blocks"].get<std::uint64_t>(), 32U * 25);
-      if (bytes > 10'000) EXPECT_GE(resumed + 1, (bytes - 10'000) / (16 * 16 * 4 + 72));
+      if (bytes > 10'000) {
+        EXPECT_GE(resumed + 1, (bytes - 10'000) / (16 * 16 * 4 + 72));
+      }
     }
     EXPECT_EQ(killed, kills);
   }
@@ -87,7 +89,7 @@ TEST_F(ResumeTest, KilledAndContinuedItIsTheSamePicture) { kill_and_go_on(4); }
 TEST_F(ResumeTest, DISABLED_KilledTwentyTimesItIsTheSamePicture) { kill_and_go_on(20); }
 
 TEST_F(ResumeTest, InterruptedItSaysHowToGoOnAndOtherBlocksDo) {
-  scene("1500 1200");
+  scene("900 700");
   ASSERT_EQ(interrupt("-O a.png a.ray", SIGINT, 700 * kTimeFactor), 3);
   EXPECT_THAT(read_file(path("log")),
               HasSubstr("the same command goes on from there (journal 'a.png.journal')"));

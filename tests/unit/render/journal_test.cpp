@@ -51,7 +51,11 @@ class JournalTest : public ::testing::Test {
     out << in.rdbuf();
     return out.str();
   }
-  void set(const std::string& content) const { std::ofstream(path, std::ios::binary) << content; }
+  /// In place: file systems flush a file that is truncated and written anew.
+  void set(const std::string& content) const {
+    fs::resize_file(path, content.size());
+    std::fstream(path, std::ios::binary | std::ios::in | std::ios::out) << content;
+  }
   void expect_right(const FrameBuffer& picture) const {
     for (int y = 0; y < picture.height(); ++y) {
       for (int x = 0; x < picture.width(); ++x) {
