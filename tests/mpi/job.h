@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -53,16 +54,10 @@ class Job {
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;
 
-  /// The processes of pafas: descendants of mpirun, whichever of them are alive, in order of birth.
+  /// The processes of pafas, descendants of mpirun, that are alive, by rank.
   std::vector<pid_t> ranks() const {
-    std::vector<pid_t> found;
-    for (const pid_t child : children_of(process_)) {
-      if (is_pafas(child))
-        found.push_back(child);
-      else
-        for (const pid_t grandchild : children_of(child))
-          if (is_pafas(grandchild)) found.push_back(grandchild);
-    }
+    std::vector<pid_t> found = processes();
+    std::sort(found.begin(), found.end(), [](pid_t a, pid_t b) { return rank_of(a) < rank_of(b); });
     return found;
   }
   /// Waits until so many ranks run. Returns them.
@@ -96,6 +91,24 @@ class Job {
   }
 
  private:
+  std::vector<pid_t> processes() const {
+    std::vector<pid_t> found;
+    for (const pid_t child : children_of(process_)) {
+      if (is_pafas(child))
+        found.push_back(child);
+      else
+        for (const pid_t grandchild : children_of(child))
+          if (is_pafas(grandchild)) found.push_back(grandchild);
+    }
+    return found;
+  }
+  static int rank_of(pid_t process) {
+    std::ifstream in("/proc/" + std::to_string(process) + "/environ");
+    for (std::string word; std::getline(in, word, '\0');)
+      for (const std::string name : {"OMPI_COMM_WORLD_RANK=", "PMI_RANK="})
+        if (word.starts_with(name)) return std::atoi(word.c_str() + name.size());
+    return 1 << 30;
+  }
   static std::vector<pid_t> children_of(pid_t process) {
     std::ifstream in("/proc/" + std::to_string(process) + "/task/" + std::to_string(process) + "/children");
     std::vector<pid_t> out;

@@ -151,12 +151,17 @@ TEST_F(MpiTest, KilledSlavesCostNothingButTheirWork) {
   std::mt19937 random(seed);
   for (const std::size_t dead : {1U, 4U}) {
     std::filesystem::remove(folder() / "out.ppm");
+    std::filesystem::remove(folder() / "out.ppm.journal");
     Job job(folder(), on_ranks(5, ENABLE_RECOVERY),
             options + " -q --threads 1 -O out.ppm --stats stats.json scene.ray");
     std::vector<pid_t> ranks = job.wait_for_ranks(5);
     ASSERT_EQ(ranks.size(), 5u);
-    std::this_thread::sleep_for(std::chrono::milliseconds(300 + random() % 500));
-    ranks.erase(ranks.begin());  // the master is born first
+    // A rank that dies while MPI starts takes the others along. Once the master has begun a journal, all have
+    // started; the scene is not yet sent then.
+    while (!std::filesystem::exists(folder() / "out.ppm.journal") && job.running())
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 600));
+    ranks.erase(ranks.begin());
     std::shuffle(ranks.begin(), ranks.end(), random);
     for (std::size_t i = 0; i < dead; ++i) kill(ranks[i], SIGKILL);
     const Outcome out = job.wait(60);
