@@ -256,7 +256,8 @@ TEST(WorkBookTest, FastWorkersGetMore) {
       for (const Block& block : blocks) book.finished(block.number, worker, worker == 0 ? .01 : .1, now);
     }
   }
-  EXPECT_GT(given[0], 5 * given[1]);
+  // Not ten times as many: what is learned from both is a mixture until each has done much.
+  EXPECT_GT(given[0], 2 * given[1]);
 }
 
 TEST(WorkBookTest, UnknownSchedulesAreRefused) {
