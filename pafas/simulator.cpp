@@ -251,6 +251,8 @@ void Simulation::handle(Event&& event) {
       if (event.wants_work && !it.waits && !give(event.rank, done)) {
         it.waits = true;
         waiting_.push_back(event.rank);
+      } else if (it.waits && it.unfinished() == 0 && give(event.rank, done)) {
+        it.waits = false;
       }
       ask_waiting();
       return;
@@ -319,6 +321,7 @@ void Simulation::ask_waiting() {
   for (std::size_t left = waiting_.size(); left > 0 && refused < kRefusals; --left) {
     const int number = waiting_.front();
     waiting_.pop_front();
+    if (!rank(number).waits) continue;  // it has got work since
     if (give(number, now_)) {
       rank(number).waits = false;
     } else {

@@ -15,7 +15,7 @@ namespace rayshade {
 
 class CostForecast {
  public:
-  static constexpr int kCellSide = 4;
+  static constexpr int kCellSide = 2;
 
   explicit CostForecast(const BlockGrid& grid);
 

@@ -295,12 +295,12 @@ TEST(GranularityTest, AWorkerAsksWhenNoBlockWaits) {
 }
 
 TEST(GranularityTest, LimitsHold) {
-  EXPECT_EQ(message_size({1'000'000, 100, 1, 1, 1, 0}).blocks, 150);
-  EXPECT_EQ(message_size({1'000'000, 100, 1, 1, 1, 7}).blocks, 7);
-  EXPECT_EQ(message_size({1'000'000, 0, 1, 1, 1, 0}).blocks, 4);  // nothing is known
-  EXPECT_EQ(message_size({3, 100, 1, 8, 1, 2}).blocks, 8);        // every thread has one
-  EXPECT_EQ(message_size({1, 1, .001, 1, 1, 0}).blocks, 1);
-  EXPECT_DOUBLE_EQ(message_size({100, 40, .1, 2, .5, 0}).seconds, 1);
+  EXPECT_EQ(message_size({1'000'000, 100, 1, 1, 1, 1, 0}).blocks, 150);
+  EXPECT_EQ(message_size({1'000'000, 100, 1, 1, 1, 1, 7}).blocks, 7);
+  EXPECT_EQ(message_size({1'000'000, 0, 1, 1, 1, 1, 0}).blocks, 4);  // nothing is known
+  EXPECT_EQ(message_size({3, 100, 1, 8, 1, 1, 2}).blocks, 8);        // every thread has one
+  EXPECT_EQ(message_size({1, 1, .001, 1, 1, 1, 0}).blocks, 1);
+  EXPECT_DOUBLE_EQ(message_size({100, 40, .1, 2, .5, 1, 0}).seconds, 1);
 }
 
 }  // namespace
