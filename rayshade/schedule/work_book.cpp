@@ -219,8 +219,8 @@ void WorkBook::give_copies(int worker_number, std::vector<Block>& blocks, double
 void WorkBook::learn(std::int64_t number, int worker_number, double seconds) {
   if (!std::isfinite(seconds) || seconds < 0) return;
   Worker& it = worker(worker_number);
-  if (forecast_->knows_cell(forecast_->cell_of(number))) {
-    it.expected = it.expected * kMemory + forecast_->seconds(number);
+  if (const double nearby = forecast_->nearby_seconds(number); nearby > 0) {
+    it.expected = it.expected * kMemory + nearby;
     it.took = it.took * kMemory + seconds;
     if (it.present) weigh(it, speed(it) * it.threads);
   }

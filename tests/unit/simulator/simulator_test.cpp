@@ -90,7 +90,8 @@ TEST(SimulatorTest, UnequalSpeedsAreUsed) {
   const BlockCosts costs = disc(512, 16, .01);
   SimulatorOptions options = ideal(3);
   options.speeds = {1, .1, 1};
-  EXPECT_GT(simulate(costs, options).efficiency, .9);
+  // A rank ten times slower than the others is known for that only after its first long message.
+  EXPECT_GT(simulate(costs, options).efficiency, .8);
   options.speeds = {};
   options.speed_spread = .5;
   options.ranks = 10;
