@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "rayshade/schedule/cost_forecast.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rayshade {
@@ -49,6 +50,14 @@ double CostForecast::per_pixel(std::int64_t cell) const {
 
 double CostForecast::seconds(std::int64_t number) const {
   return per_pixel(cell_of(number)) * static_cast<double>(grid_.block(number).pixels());
+}
+
+double CostForecast::nearby_seconds(std::int64_t number) const {
+  const std::size_t level = std::min<std::size_t>(2, levels_.size() - 1);
+  const std::int64_t cell = cell_of(number);
+  const std::int64_t column = cell % cell_columns() >> level, row = cell / cell_columns() >> level;
+  const Sum& sum = levels_[level].cells[static_cast<std::size_t>(row * levels_[level].columns + column)];
+  return sum.pixels > 0 ? sum.seconds / sum.pixels * static_cast<double>(grid_.block(number).pixels()) : 0;
 }
 
 double CostForecast::mean_per_pixel() const {

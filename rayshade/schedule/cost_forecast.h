@@ -15,7 +15,7 @@ namespace rayshade {
 
 class CostForecast {
  public:
-  static constexpr int kCellSide = 4;
+  static constexpr int kCellSide = 2;
 
   explicit CostForecast(const BlockGrid& grid);
 
@@ -35,6 +35,9 @@ class CostForecast {
   double per_pixel(std::int64_t cell) const;
   /// Seconds for a block.
   double seconds(std::int64_t number) const;
+  /// Seconds for a block if it were like the average of some dozens around it, to which several workers will
+  /// have contributed; 0 if none of them is known.
+  double nearby_seconds(std::int64_t number) const;
   /// Seconds per pixel of all that was learned.
   double mean_per_pixel() const;
 

@@ -2,7 +2,7 @@
 // Cost: the most expensive blocks first, so that the last ones are cheap and no worker waits long for
 // another.
 //
-// Nobody knows costs beforehand. So one block of every cell of the forecast (4 x 4 blocks) is rendered first,
+// Nobody knows costs beforehand. So one block of every cell of the forecast (2 x 2 blocks) is rendered first,
 // in an order that covers the picture ever more finely; then cells are taken by what a block of theirs is
 // expected to cost, and what becomes known meanwhile counts at once. A message takes its blocks from as few
 // cells as it can: neighbours share the trees that their rays build.

@@ -11,6 +11,9 @@ namespace {
 constexpr double kMessages = 4;
 /// Longer messages save nothing, and are lost with the worker.
 constexpr double kMostSeconds = 2;
+/// Of the master, for an answer; with less work in a message than all workers' answers take, they would
+/// queue.
+constexpr double kAnswerSeconds = 20e-6;
 /// What one message of the protocol holds.
 constexpr int kMostBlocks = 150;
 /// While nothing is known of costs.
@@ -24,12 +27,17 @@ MessageSize message_size(const MessageQuestion& q) {
   if (q.seconds_left <= 0) most = std::min(most, kFirstBlocks * threads);
   most = std::max(most, std::min(threads, kMostBlocks));
   const double part = q.share / kMessages;
-  const double blocks = std::ceil(static_cast<double>(q.blocks_left) * part);
+  double blocks = std::ceil(static_cast<double>(q.blocks_left) * part);
+  double seconds = kMostSeconds;
+  if (q.seconds_left > 0 && q.blocks_left > 0) {
+    const double least = std::min(kMostSeconds, kAnswerSeconds * q.workers);
+    const double block_seconds = q.seconds_left / static_cast<double>(q.blocks_left) / (threads * q.speed);
+    blocks = std::max(blocks, std::floor(least / block_seconds));
+    seconds = std::clamp(q.seconds_left * part / (threads * q.speed), least, kMostSeconds);
+  }
   MessageSize size;
-  size.blocks = std::clamp(blocks < kMostBlocks ? static_cast<int>(blocks) : kMostBlocks,
-                           std::min(threads, most), most);
-  size.seconds =
-      q.seconds_left > 0 ? std::min(kMostSeconds, q.seconds_left * part / (threads * q.speed)) : kMostSeconds;
+  size.blocks = static_cast<int>(std::clamp(blocks, double(std::min(threads, most)), double(most)));
+  size.seconds = seconds;
   return size;
 }
 

@@ -20,10 +20,12 @@ struct MessageQuestion {
   double share = 1;              ///< of the worker's speed in that of all
   int threads = 1;               ///< of the worker
   double speed = 1;              ///< of one of them
+  int workers = 1;               ///< in all
   int most_blocks = 0;           ///< the user's limit; 0: none
 };
 
-/// A part of the worker's share of all that is left: many blocks in the beginning, fewer toward the end.
+/// A part of the worker's share of all that is left: many blocks in the beginning, fewer toward the end; but
+/// as far as is known enough for as long as the master needs to answer all the others once.
 MessageSize message_size(const MessageQuestion& question);
 
 /// Whether a worker returns its results and asks for more: as soon as no block waits for one of its threads,

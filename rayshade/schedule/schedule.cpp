@@ -9,6 +9,11 @@
 #include "rayshade/schedule/round_robin.h"
 
 namespace rayshade {
+namespace {
+
+constexpr int kManyWorkers = 64;
+
+}  // namespace
 
 std::string resolve_schedule(const std::string& name) {
   return name.empty() || name == "auto" ? "cost" : name;
@@ -17,8 +22,11 @@ std::string resolve_schedule(const std::string& name) {
 BlockGrid schedule_grid(int width, int height, const ScheduleOptions& options) {
   const std::string name = resolve_schedule(options.name);
   if (name == "roundrobin" || name == "bands") return BlockGrid::scan_lines(width, height);
-  return {width, height,
-          options.block_side > 0 ? options.block_side : default_block_side(width, height, options.workers)};
+  if (options.block_side > 0) return {width, height, options.block_side};
+  // With many workers the last blocks of some take a good part of the whole time: smaller ones are worth
+  // their borders.
+  const int workers = options.workers > kManyWorkers ? 4 * options.workers : options.workers;
+  return {width, height, default_block_side(width, height, workers)};
 }
 
 std::unique_ptr<Schedule> make_schedule(const ScheduleOptions& options, const BlockGrid& grid,

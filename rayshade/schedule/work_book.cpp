@@ -175,8 +175,12 @@ std::vector<Block> WorkBook::take(int worker_number, int threads, double now) {
   // Those that are expected and have not come yet will want their share too.
   const int awaited = std::max(0, options_.workers - lost_ - present_);
   const double all = speed_ + awaited * (speed_ / present_);
-  const MessageSize size = message_size(
-      {left_->blocks(), left_->seconds(), it.weight / all, it.threads, speed(it), options_.granularity});
+  const MessageSize size = message_size({left_->blocks(), left_->seconds(), it.weight / all, it.threads,
+                                         speed(it), present_ + awaited, options_.granularity});
+  // Others will have done all the rest before this one comes to it: work is not put by for it.
+  const bool late = it.held.size() >= static_cast<std::size_t>(it.threads) && left_->seconds() > 0 &&
+                    it.busy_until - now > left_->seconds() / all;
+  if (late) return blocks;
   double seconds = 0;
   while (static_cast<int>(blocks.size()) < size.blocks) {
     const bool enough = static_cast<int>(blocks.size()) >= it.threads && seconds >= size.seconds;
@@ -215,8 +219,8 @@ void WorkBook::give_copies(int worker_number, std::vector<Block>& blocks, double
 void WorkBook::learn(std::int64_t number, int worker_number, double seconds) {
   if (!std::isfinite(seconds) || seconds < 0) return;
   Worker& it = worker(worker_number);
-  if (forecast_->knows_cell(forecast_->cell_of(number))) {
-    it.expected = it.expected * kMemory + forecast_->seconds(number);
+  if (const double nearby = forecast_->nearby_seconds(number); nearby > 0) {
+    it.expected = it.expected * kMemory + nearby;
     it.took = it.took * kMemory + seconds;
     if (it.present) weigh(it, speed(it) * it.threads);
   }
