@@ -14,6 +14,7 @@
 #include "pafas/run_report.h"
 #include "rayshade/cli/program.h"
 #include "rayshade/lang/parse.h"
+#include "rayshade/schedule/granularity.h"
 #include "rayshade/scene/scene.h"
 
 namespace pafas {
@@ -249,7 +250,7 @@ void Worker::collect_results() {
   }
   const QueueFeed::State state = feed_->state();
   const bool idle = state.queued == 0 && state.rendered == 0;
-  const bool wants = !asking_ && state.queued == 0;
+  const bool wants = !asking_ && asks_for_more(state.queued + state.rendered, report_.threads);
   if (wants || (!results_.empty() && (idle || seconds_now() - oldest_result_ > options_.timing.hold)))
     send_results(wants);
 }
