@@ -14,6 +14,7 @@
 #include <memory>
 #include <new>
 
+#include "rayshade/cli/cost_recorder.h"
 #include "rayshade/cli/kept_work.h"
 #include "rayshade/cli/options.h"
 #include "rayshade/cli/pictures.h"
@@ -78,6 +79,7 @@ class Run {
     }
     settings_ = resolve_settings(scene_.settings, options_.settings);
     take_report_settings();
+    if (options_.cluster.estimate > 0) return estimate();
     if (options_.action == Action::kRender) return render();
     Renderer renderer(scene_, settings_, engine_.provider(), render_options());
     if (options_.action == Action::kExplain) return explain(renderer);
@@ -223,6 +225,7 @@ class Run {
     Progress progress(report_.get(), {!chatty(), report_.get() == stderr && isatty(STDERR_FILENO) != 0,
                                       options_.report_frequency.value_or(0), settings_.min_y});
     SignalRequests requests;
+    CostRecorder costs;
     bool complete = true;
     for (int i = 0; i < settings_.frames && complete; ++i) {
       const int frame = settings_.first_frame + i;
@@ -241,7 +244,7 @@ class Run {
                                                      output.write_partial(picture, frame);
                                                    }
                                                  },
-                                                 kept.keeper(frame, picture)});
+                                                 kept.keeper(frame, picture), costs.of_frame()});
       progress.finish();
       if (complete) {
         output.write_frame(picture, frame);
@@ -263,9 +266,19 @@ class Run {
     run_.frames_resumed = kept.frames_resumed();
     RenderStatistics statistics = renderer.statistics();
     engine_.end(statistics);
+    if (options_.block_costs && complete)
+      write_text(*options_.block_costs,
+                 format_block_costs(
+                     costs.costs(settings_, format, statistics, run_.parse_seconds, engine_.scene_bytes())));
     const bool differs = statistics.verify.differing > 0;
     report(statistics, differs ? "differs" : complete ? "complete" : "stopped");
     return verified(statistics, complete ? kComplete : kStopped);
+  }
+
+  int estimate() {
+    Renderer renderer(scene_, settings_, engine_.provider(), render_options());
+    PictureFormat format;
+    return engine_.estimate({options_, settings_, renderer, format, run_.scene_hash});
   }
 
   std::string why_no_eye_tree() const {
