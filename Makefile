@@ -10,11 +10,13 @@ SUDO    := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 PACKAGES       := g++ cmake ninja-build flex bison pkg-config libpng-dev zlib1g-dev libfmt-dev libsleef-dev \
                   librandom123-dev libopenexr-dev libhwy-dev
 TEST_PACKAGES  := libgtest-dev libgmock-dev nlohmann-json3-dev libboost-dev man-db groff-base
-BENCH_PACKAGES := libbenchmark-dev time libembree-dev
+BENCH_PACKAGES := libbenchmark-dev libembree-dev povray
 LINT_PACKAGES  := clang clang-tidy clang-format libclang-rt-14-dev
 
+BENCH_CMAKE := cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DRAYSHADE_BENCH=ON
+
 .DEFAULT_GOAL := help
-.PHONY: help run build check check-long asan tsan bench bench-fas install package lint format fuzz clean \
+.PHONY: help run build check check-long asan tsan bench bench-fas bench-scenes install package lint format fuzz clean \
         packages test-packages bench-packages lint-packages
 
 help: ## list the targets
@@ -36,7 +38,7 @@ test-packages:
 bench-packages:
 	$(call need,$(PACKAGES) $(BENCH_PACKAGES))
 lint-packages:
-	$(call need,$(PACKAGES) $(TEST_PACKAGES) $(LINT_PACKAGES))
+	$(call need,$(PACKAGES) $(TEST_PACKAGES) $(filter-out povray,$(BENCH_PACKAGES)) $(LINT_PACKAGES))
 
 build: packages ## build the programs into build/bin
 	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DCMAKE_INSTALL_PREFIX=$(PREFIX)
@@ -64,15 +66,21 @@ tsan: test-packages ## the tests under the thread sanitizer
 	cmake --preset tsan && cmake --build --preset tsan -j $(JOBS)
 	ctest --test-dir build-tsan -j $(JOBS) -LE 'long|timing' --output-on-failure
 
+# WRITE=--write also puts the tables of bench-fas and bench-scenes into docs/performance.md.
 bench: bench-packages ## run the benchmarks (speed as ratios within one run)
-	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_BENCH=ON
+	$(BENCH_CMAKE)
 	cmake --build $(BUILD) -j $(JOBS)
 	bench/run $(BUILD)
 
 bench-fas: bench-packages ## replay the rays of the procedural databases: trees, hierarchy, Embree
-	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_BENCH=ON
-	cmake --build $(BUILD) -j $(JOBS) --target fas_bench spd
-	bench/run-fas $(BUILD)
+	$(BENCH_CMAKE)
+	cmake --build $(BUILD) -j $(JOBS) --target fas_bench rayshade spd
+	bench/run-fas $(BUILD) $(WRITE)
+
+bench-scenes: bench-packages ## time the procedural databases as whole programs: rayshade, POV-Ray
+	$(BENCH_CMAKE)
+	cmake --build $(BUILD) -j $(JOBS) --target rayshade spd compare_pictures
+	bench/run-scenes $(BUILD) $(WRITE)
 
 install: build ## install programs, scenes, manuals and completion under PREFIX
 	$(SUDO) cmake --install $(BUILD) --prefix $(PREFIX)
@@ -88,9 +96,10 @@ package: packages ## build a Debian package in build/ and check it
 
 lint: lint-packages ## a second compiler, clang-format and clang-tidy
 	clang-format --dry-run -Werror $$(git ls-files '*.cpp' '*.h')
-	cmake -S . -B build-lint -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release
+	cmake -S . -B build-lint -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release \
+	  -DRAYSHADE_TESTS=ON -DRAYSHADE_BENCH=ON
 	cmake --build build-lint -j $(JOBS)
-	run-clang-tidy -p build-lint -quiet -j $(JOBS) '$(CURDIR)/(fas|rayshade|scenes)/.*'
+	run-clang-tidy -p build-lint -quiet -j $(JOBS) '$(CURDIR)/(fas|rayshade|scenes|tests|bench)/.*'
 
 format: lint-packages ## format all sources
 	clang-format -i $$(git ls-files '*.cpp' '*.h')

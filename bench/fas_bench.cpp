@@ -3,19 +3,25 @@
 //
 // Records the rays of each scene and replays them through adaptive subdivision, through the hierarchy alone,
 // and through Embree's single rays (fast and robust) and 16-wide packets, in turn within one run, on one
-// thread. Every repetition starts without trees, and building is part of the time. Prints nanoseconds per ray
-// of each class, ratios, and memory; wrong answers of ours end the run.
+// thread and in its processor time. Every repetition starts without trees, and building is part of the time.
+// Prints nanoseconds per ray of each class and ratios; wrong answers of ours end the run.
+//
+// Rays are recorded and replayed in batches, so that memory does not grow with samples; the trees of a
+// repetition stay from batch to batch.
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <ctime>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "bench/recording.h"
 #include "bench/yardstick.h"
@@ -24,8 +30,11 @@
 namespace rayshade::bench {
 namespace {
 
+/// Seconds of processor time of this thread: what else the machine does counts as little as possible.
 double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 enum Class { kEye, kShadow, kSecondary, kClasses };
@@ -78,38 +87,43 @@ Stream stream_of(const Recording& r, Class which) {
   std::exit(1);
 }
 
-/// Replays one class, or everything (`spans` of the recording), and checks the answers bit by bit.
+/// Replays one class span by span, and checks the answers bit by bit, outside the time taken: every few
+/// thousand rays, so that reading the clock costs nothing and answers stay in the cache.
 double replay(const Intersector& intersector, const Stream& s, const Recording& r, const char* scene,
               const char* name) {
+  constexpr std::size_t kBetweenChecks = 2048;
   TraceScratch scratch;
-  std::vector<NearestAnswer> nearest(1);
-  std::vector<OcclusionAnswer> shadow(1);
-  for (const std::size_t n : s.spans) {
-    if (n > nearest.size()) nearest.resize(n);
-    if (n > shadow.size()) shadow.resize(n);
-  }
+  std::vector<NearestAnswer> nearest;
+  std::vector<OcclusionAnswer> shadow;
   double seconds = 0;
   std::size_t first = 0;
-  for (const std::size_t n : s.spans) {
-    if (!s.shadow.empty()) {
-      const double start = now();
-      intersector.occluded({s.shadow.data() + first, n}, {shadow.data(), n}, scratch);
-      seconds += now() - start;
-      for (std::size_t i = 0; i < n; ++i)
-        if (shadow[i].occluded != (r.occluded[s.places[first + i]] != 0))
-          wrong(scene, name, s.places[first + i]);
-    } else {
-      const double start = now();
-      intersector.nearest({s.nearest.data() + first, n}, {nearest.data(), n}, scratch);
-      seconds += now() - start;
-      for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t place = s.places[first + i];
+  for (std::size_t span = 0; span < s.spans.size();) {
+    std::size_t count = 0, end = span;
+    while (end < s.spans.size() && count < kBetweenChecks) count += s.spans[end++];
+    if (!s.shadow.empty())
+      shadow.resize(std::max(shadow.size(), count));
+    else
+      nearest.resize(std::max(nearest.size(), count));
+    const double start = now();
+    for (std::size_t at = 0; span < end; at += s.spans[span++]) {
+      const std::size_t n = s.spans[span];
+      if (!s.shadow.empty())
+        intersector.occluded({s.shadow.data() + first + at, n}, {shadow.data() + at, n}, scratch);
+      else
+        intersector.nearest({s.nearest.data() + first + at, n}, {nearest.data() + at, n}, scratch);
+    }
+    seconds += now() - start;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t place = s.places[first + i];
+      if (!s.shadow.empty()) {
+        if (shadow[i].occluded != (r.occluded[place] != 0)) wrong(scene, name, place);
+      } else {
         const double t = nearest[i].found ? nearest[i].hit.t() : -1;
         if (t != r.distance[place] || (nearest[i].found && nearest[i].hit.leaf != r.leaf[place]))
           wrong(scene, name, place);
       }
     }
-    first += n;
+    first += count;
   }
   return seconds;
 }
@@ -159,6 +173,87 @@ struct Arguments {
   std::vector<std::string> scenes;
 };
 
+// A batch of gears is about 1 GB, and as much again while its classes are told apart.
+constexpr std::size_t kBatch = 6'000'000;
+
+/// Replays the batches of one scene in all ways, and adds up.
+class Contest {
+ public:
+  Contest(const CompiledScene& scene, const FasOptions& options, int repeat, const char* name)
+      : name_(name), fast_(scene, false), robust_(scene, true), repetitions_(repeat) {
+    for (Repetition& repetition : repetitions_) {
+      repetition.by_class = make_fas(scene, options);
+      repetition.mixed = make_fas(scene, options);
+    }
+    hierarchy_ = make_hierarchy(scene);
+  }
+
+  void replay_batch(const Recording& recording) {
+    Stream streams[kClasses];
+    for (int c = 0; c < kClasses; ++c) {
+      streams[c] = stream_of(recording, static_cast<Class>(c));
+      rays_[c] += static_cast<double>(streams[c].places.size());
+    }
+    for (std::size_t i = 0; i < repetitions_.size(); ++i)
+      for (int turn = 0; turn < kWays; ++turn)
+        replay_way(static_cast<Way>((turn + i) % kWays), recording, streams, repetitions_[i]);
+  }
+
+  /// Of all batches: medians of the repetitions. Building the hierarchy is left to the caller.
+  Times times() const {
+    Times out;
+    const auto median_of = [&](auto&& value) {
+      std::vector<double> values;
+      for (const Repetition& repetition : repetitions_) values.push_back(value(repetition));
+      return median(values);
+    };
+    for (int c = 0; c < kClasses; ++c) out.rays[c] = rays_[c];
+    for (int way = 0; way < kWays; ++way) {
+      for (int c = 0; c < kClasses; ++c)
+        out.seconds[way][c] = median_of([&](const Repetition& r) { return r.seconds[way][c]; });
+      out.mixed[way] = median_of([&](const Repetition& r) { return r.mixed_seconds[way]; });
+    }
+    out.packets = median_of([](const Repetition& r) { return r.packets; });
+    out.build[kFast] = fast_.build_seconds();
+    out.build[kRobust] = robust_.build_seconds();
+    return out;
+  }
+
+ private:
+  struct Repetition {
+    std::unique_ptr<Intersector> by_class, mixed;  ///< trees of their own: both start without any
+    double seconds[kWays][kClasses] = {};
+    double mixed_seconds[kWays] = {};
+    double packets = 0;
+  };
+
+  void replay_way(Way way, const Recording& recording, const Stream* streams, Repetition& out) {
+    if (way == kFas || way == kHierarchy) {
+      const Intersector& by_class = way == kFas ? *out.by_class : *hierarchy_;
+      const Intersector& mixed = way == kFas ? *out.mixed : *hierarchy_;
+      for (int c = 0; c < kClasses; ++c)
+        out.seconds[way][c] +=
+            replay(by_class, streams[c], recording, name_, way == kFas ? "fas" : "hierarchy");
+      out.mixed_seconds[way] += replay_mixed(mixed, recording);
+      return;
+    }
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+    Yardstick& embree = way == kFast ? fast_ : robust_;
+    for (int c = 0; c < kClasses; ++c) out.seconds[way][c] += replay(embree, streams[c]);
+    out.mixed_seconds[way] += replay_mixed(embree, recording);
+    if (way == kFast) out.packets += replay(embree, streams[kEye], true);
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_OFF);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_OFF);
+  }
+
+  const char* name_;
+  Yardstick fast_, robust_;
+  std::unique_ptr<Intersector> hierarchy_;
+  std::vector<Repetition> repetitions_;
+  double rays_[kClasses] = {};
+};
+
 Times measure(const std::string& path, const Arguments& arguments) {
   FileProvider provider;
   ParseResult parsed = parse_scene(provider, path, {});
@@ -176,62 +271,31 @@ Times measure(const std::string& path, const Arguments& arguments) {
   Recording recording;
   RenderOptions options;
   options.intersector = IntersectorKind::kHierarchy;
+  std::function<void(const Recording&)> replay_batch;
   options.wrap = [&](const CompiledScene&,
                      std::unique_ptr<Intersector> inner) -> std::unique_ptr<Intersector> {
-    return std::make_unique<Recorder>(std::move(inner), recording);
+    return std::make_unique<Recorder>(std::move(inner), recording, kBatch,
+                                      [&](const Recording& batch) { replay_batch(batch); });
   };
   Renderer renderer(parsed.scene, settings, provider, options);
+  std::optional<Contest> contest;  // from the first batch on: the classes of rays are the frame's
+  replay_batch = [&](const Recording& batch) {
+    if (!contest)
+      contest.emplace(renderer.compiled(), renderer.fas_options(), arguments.repeat, path.c_str());
+    contest->replay_batch(batch);
+  };
   FrameBufferOptions buffer;
   buffer.width = settings.window_width();
   buffer.height = settings.window_height();
   FrameBuffer picture(buffer);
   const std::atomic<bool> stop{false};
-  renderer.render_frame(0, picture, stop, {});
+  renderer.render_frame({0, picture, stop});
+  replay_batch(recording);
 
-  Times out;
-  const CompiledScene& scene = renderer.compiled();
-  FasOptions fas_options = renderer.fas_options();
-  Stream streams[kClasses];
-  for (int c = 0; c < kClasses; ++c) {
-    streams[c] = stream_of(recording, static_cast<Class>(c));
-    out.rays[c] = static_cast<double>(streams[c].places.size());
-  }
-  Yardstick fast(scene, false), robust(scene, true);
-  out.build[kFast] = fast.build_seconds();
-  out.build[kRobust] = robust.build_seconds();
-  {
-    const double start = now();
-    const_cast<CompiledScene&>(scene).rebuild(true);  // gives the same again
-    out.build[kHierarchy] = out.build[kFas] = now() - start;
-  }
-  std::vector<double> seconds[kWays][kClasses], mixed[kWays], packets;
-  for (int repetition = 0; repetition < arguments.repeat; ++repetition) {
-    for (int turn = 0; turn < kWays; ++turn) {
-      const int way = (turn + repetition) % kWays;
-      if (way == kFas || way == kHierarchy) {
-        const auto intersector = way == kFas ? make_fas(scene, fas_options) : make_hierarchy(scene);
-        for (int c = 0; c < kClasses; ++c)
-          seconds[way][c].push_back(
-              replay(*intersector, streams[c], recording, path.c_str(), way == kFas ? "fas" : "hierarchy"));
-        const auto fresh = way == kFas ? make_fas(scene, fas_options) : make_hierarchy(scene);
-        mixed[way].push_back(replay_mixed(*fresh, recording));
-      } else {
-        _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-        _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-        Yardstick& embree = way == kFast ? fast : robust;
-        for (int c = 0; c < kClasses; ++c) seconds[way][c].push_back(replay(embree, streams[c]));
-        mixed[way].push_back(replay_mixed(embree, recording));
-        if (way == kFast) packets.push_back(replay(embree, streams[kEye], true));
-        _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_OFF);
-        _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_OFF);
-      }
-    }
-  }
-  for (int way = 0; way < kWays; ++way) {
-    for (int c = 0; c < kClasses; ++c) out.seconds[way][c] = median(seconds[way][c]);
-    out.mixed[way] = median(mixed[way]);
-  }
-  out.packets = median(packets);
+  Times out = contest->times();
+  const double start = now();
+  const_cast<CompiledScene&>(renderer.compiled()).rebuild(true);  // gives the same again
+  out.build[kHierarchy] = out.build[kFas] = now() - start;
   return out;
 }
 
@@ -246,7 +310,7 @@ int run(const Arguments& arguments) {
     logs[which] += std::log(ratio);
     ++counts[which];
   };
-  std::printf("%d samples per pixel, %d x %d, medians of %d, ns per ray\n\n",
+  std::printf("%d samples per pixel, %d x %d, medians of %d, processor time per ray in ns\n\n",
               arguments.samples * arguments.samples, arguments.size, arguments.size, arguments.repeat);
   std::printf(
       "| scene | rays eye/shadow/secondary (M) | way | eye | shadow | secondary | mixed | build ms |\n");

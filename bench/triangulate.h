@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "fas/geometry.h"
+#include "fas/fas.h"
 
 namespace rayshade::bench {
 

@@ -2,8 +2,8 @@
 #include "bench/yardstick.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 
 #include "bench/triangulate.h"
@@ -12,15 +12,12 @@
 namespace rayshade::bench {
 namespace {
 
+// Processor time of the process: Embree may build in threads of its own.
 double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
-
-struct UserGeometry {
-  const CompiledScene* scene;
-  const std::vector<LeafId>* leaves;
-  TraceScratch* scratch;
-};
 
 Ray ray_of(float ox, float oy, float oz, float dx, float dy, float dz) {
   Ray ray;
@@ -139,11 +136,9 @@ void Yardstick::build(bool robust) {
     rtcReleaseGeometry(mesh);
   }
   if (!others_.empty()) {
-    static thread_local UserGeometry user;
-    user = {&scene_, &others_, &scratch_};
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(others_.size()));
-    rtcSetGeometryUserData(geometry, &user);
+    rtcSetGeometryUserData(geometry, &user_);
     rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry, intersect);
     rtcSetGeometryOccludedFunction(geometry, occlude);

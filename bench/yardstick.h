@@ -14,6 +14,13 @@
 
 namespace rayshade::bench {
 
+/// What Embree hands back to the callbacks of user geometry.
+struct UserGeometry {
+  const CompiledScene* scene;
+  const std::vector<LeafId>* leaves;
+  TraceScratch* scratch;
+};
+
 class Yardstick {
  public:
   Yardstick(const CompiledScene& scene, bool robust);
@@ -38,6 +45,7 @@ class Yardstick {
   TraceScratch scratch_;
   std::vector<float> vertices_;
   std::vector<LeafId> others_;  ///< leaves that are user geometry
+  UserGeometry user_{&scene_, &others_, &scratch_};
   RTCDevice device_ = nullptr;
   RTCScene embree_ = nullptr;
   double build_seconds_ = 0;

@@ -28,6 +28,8 @@ install_compressed(${PROJECT_SOURCE_DIR}/man/rayshade-spd.1 ${CMAKE_INSTALL_MAND
 install(FILES ${CMAKE_BINARY_DIR}/man/rayshade.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME rayshade)
 
+# The renderer alone: the library for programs of others is a component of its own (fas/CMakeLists.txt).
+set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};rayshade;Unspecified;/")
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME rayshade)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})

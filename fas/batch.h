@@ -183,4 +183,19 @@ std::uint64_t occluded_in_group(HyperTree& tree, ThreadState& state, const Leaf&
   return stopped;
 }
 
+/// Nearest hits of a group of rays toward the apex (or along a parallel view), which begin at `depths`.
+/// Candidates stand by their depth from the apex, so that nothing is known to lie behind a hit: all that a
+/// ray may meet are tested, in any order. `test` as for nearest_in_group().
+template <class Test>
+void nearest_toward_in_group(HyperTree& tree, ThreadState& state, const Leaf& leaf,
+                             const HyperTree::Query& any, GroupProbe& rays, const double* depths,
+                             const Test& test) {
+  std::uint64_t hit = 0;
+  occluded_in_group(tree, state, leaf, any, rays, depths, [&](std::uint32_t primitive, std::uint64_t mask) {
+    hit |= test(primitive, mask);
+    return std::uint64_t{0};
+  });
+  state.cache(tree.number()).counts.hits += static_cast<std::uint64_t>(std::popcount(hit));
+}
+
 }  // namespace fas

@@ -9,7 +9,7 @@
 // bounds themselves round (see View::slack); divisions get the error of their operands on top.
 #pragma once
 
-#include "fas/geometry.h"
+#include "fas/fas.h"
 
 namespace fas {
 
@@ -60,6 +60,14 @@ class Plane {
     const double inverse = sign_ / d[axis_];
     u = d[axis_u_] * inverse;
     v = d[axis_v_] * inverse;
+  }
+  /// A direction through (u, v) of a point view: what of_direction() maps there.
+  Point direction(double u, double v) const {
+    Point d{};
+    d[axis_] = sign_;
+    d[axis_u_] = u;
+    d[axis_v_] = v;
+    return d;
   }
   const View& view() const { return view_; }
 

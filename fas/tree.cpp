@@ -389,7 +389,7 @@ std::uintptr_t HyperTree::make_children(Node& node, const Root& root, int face, 
     }
   }
   std::size_t bytes = 4 * sizeof(Node);
-  for (int i = 0; i < 4; ++i) bytes += sizeof(std::uint32_t) * scratch.lists[i].size();
+  for (const std::vector<Entry>& list : scratch.lists) bytes += sizeof(std::uint32_t) * list.size();
   std::byte* memory = state.arena.take(bytes);
   if (!memory) return kNone;
   auto* next = reinterpret_cast<std::uint32_t*>(memory + 4 * sizeof(Node));
@@ -446,11 +446,9 @@ std::uintptr_t HyperTree::make_leaf(Node& node, const Root& root, int face, cons
     }
     const int count = candidates_.open(entry, children);
     for (int i = 0; i < count; ++i) {
-      if ((children[i].entry & Candidates::kSubtree) == 0) {
+      const bool closed = (children[i].entry & Candidates::kSubtree) != 0;
+      if (!closed || (square.subtree(children[i], area) && part.meets(area)))
         stack.push_back(children[i].entry);
-      } else if (square.subtree(children[i], area) && part.meets(area)) {
-        stack.push_back(children[i].entry);
-      }
     }
   }
   const std::size_t found = areas.size();

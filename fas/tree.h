@@ -25,48 +25,13 @@
 #include <memory>
 #include <vector>
 
+#include "fas/candidates.h"
 #include "fas/kernels.h"
-#include "fas/pool.h"
 #include "fas/projection.h"
-#include "fas/statistics.h"
+#include "fas/thread_state.h"
+#include "fas/tuner.h"
 
 namespace fas {
-
-/// What handing on a candidate costs in nanoseconds, measured while running, shared by the trees of one
-/// structure. Racy updates only make an average of fewer samples: what is found never depends on it.
-class Tuner {
- public:
-  double per_candidate() const { return per_candidate_.load(std::memory_order_relaxed); }
-  void measured_candidate(double ns) {
-    const double old = per_candidate();
-    per_candidate_.store(old + (ns - old) * (1.0 / 32), std::memory_order_relaxed);
-  }
-
- private:
-  std::atomic<double> per_candidate_{60};
-};
-
-/// What one thread remembers of one tree.
-struct TreeCache {
-  const struct Leaf* leaf = nullptr;
-  std::uint32_t u = 0, v = 0;
-  int shift = 0, face = -1;
-  std::uint32_t occluder = 0xffffffffu;  ///< of `leaf`
-  TreeCounts counts;
-};
-
-/// What one thread owns: its arena, and a cache per tree (by HyperTree::number()).
-struct ThreadState {
-  explicit ThreadState(Pool& pool);
-  ~ThreadState();
-  TreeCache& cache(std::size_t tree) {
-    if (tree >= caches.size()) caches.resize(tree + 1);
-    return caches[tree];
-  }
-  Arena arena;
-  std::vector<TreeCache> caches;
-  std::unique_ptr<struct TreeScratch> scratch;  ///< of whoever makes nodes
-};
 
 /// Immutable but for `work` and `splitting`; blocks follow.
 struct Leaf {
@@ -85,16 +50,19 @@ struct Leaf {
 /// length.
 View make_view(View::Kind kind, const Point& point, const Bounds& bounds, double condition);
 
-/// Whether a ray from `o` along `d` passes the apex closely enough, and starts near enough, for the view to
-/// hold it.
-inline bool aims_at(const View& view, const double* o, const double* d) {
+/// Whether a ray from `o` along `d`, of interest up to t = `hi`, passes the apex closely enough, starts near
+/// enough and ends before it, for the view to hold it. (At the apex itself hulls are grown by more than
+/// `aim`.)
+inline bool aims_at(const View& view, const double* o, const double* d, double hi) {
   const double size = std::max({std::fabs(o[0]), std::fabs(o[1]), std::fabs(o[2])});
   if (!(size <= view.reach)) return false;
   if (view.kind == View::Kind::kParallel)
     return d[0] == view.direction[0] && d[1] == view.direction[1] && d[2] == view.direction[2];
   const double x = view.apex[0] - o[0], y = view.apex[1] - o[1], z = view.apex[2] - o[2];
   const double a = y * d[2] - z * d[1], b = z * d[0] - x * d[2], c = x * d[1] - y * d[0];
-  return a * a + b * b + c * c <= view.aim * view.aim * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  return a * a + b * b + c * c <= view.aim * view.aim * square &&
+         hi * hi * square <= x * x + y * y + z * z + view.aim * (std::fabs(x) + std::fabs(y) + std::fabs(z));
 }
 
 enum class Split : std::uint8_t {
@@ -217,7 +185,8 @@ void HyperTree::each_leaf(const Visit& visit) const {
   };
   for (int face = 0; face < view_.faces(); ++face) {
     const Root& root = roots_[static_cast<std::size_t>(face)];
-    if (root.state.load(std::memory_order_acquire) != 2) continue;
+    // A face that sees nothing has no node.
+    if (root.state.load(std::memory_order_acquire) != 2 || !root.node) continue;
     visit_leaves(root, *root.node, {0, 0, 0}, face, call, const_cast<Visit*>(&visit));
   }
 }

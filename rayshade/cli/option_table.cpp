@@ -328,6 +328,14 @@ std::vector<OptionSpec> make_table() {
            throw UsageError("--fas-split: '" + v[0] + "' is neither adaptive nor always");
        },
        {"adaptive", "always"}});
+  t.push_back(
+      {0,
+       "verify",
+       {"SHARE"},
+       kRun,
+       "Ask brute force again about this share of all rays, from 0 to 1 or from 0% to 100%, while rendering. "
+       "Answers that differ are counted, the first ten printed, and the exit status is 4.",
+       [](Options& o, Values v) { o.verify = parse_share(v[0], "--verify"); }});
   t.push_back({0,
                "block",
                {"N"},
@@ -384,15 +392,27 @@ std::vector<OptionSpec> make_table() {
                "Write all statistics to FILE as JSON.",
                [](Options& o, Values v) { o.stats_file = v[0]; },
                {"FILE"}});
-  t.push_back(
-      {0,
-       "cost-map",
-       {"FILE"},
-       kReport,
-       "Write intersection tests, box tests and microseconds of each pixel as float pictures FILE.tests.pfm, "
-       "FILE.bounds_tests.pfm and FILE.microseconds.pfm, and each in false colours as a PNG beside it.",
-       [](Options& o, Values v) { o.cost_map = v[0]; },
-       {"FILE"}});
+  t.push_back({0,
+               "cost-map",
+               {"FILE"},
+               kReport,
+               "Write intersection tests, box tests, microseconds, rays, and rays answered by trees of each "
+               "pixel as float "
+               "pictures FILE.tests.pfm, FILE.bounds_tests.pfm, FILE.microseconds.pfm, FILE.rays.pfm and "
+               "FILE.tree_rays.pfm, "
+               "and each in false colours as a PNG beside it.",
+               [](Options& o, Values v) { o.cost_map = v[0]; },
+               {"FILE"}});
+  t.push_back({0,
+               "fas-dump",
+               {"FILE.svg"},
+               kReport,
+               "Draw the tree of eye rays over the picture: every cell of its subdivision, shaded by the "
+               "number of objects to "
+               "be tested there. Refused where there is no such tree: with a lens, few objects, or another "
+               "intersector.",
+               [](Options& o, Values v) { o.fas_dump = v[0]; },
+               {"FILE"}});
   t.push_back({0,
                "explain",
                {"X", "Y"},
@@ -427,9 +447,14 @@ std::vector<OptionSpec> make_table() {
 
 }  // namespace
 
-const std::vector<OptionSpec>& option_table() {
+const std::vector<OptionSpec>& option_table(Program program) {
   static const std::vector<OptionSpec> table = make_table();
-  return table;
+  static const std::vector<OptionSpec> with_cluster = [] {
+    std::vector<OptionSpec> all = cluster_option_table();
+    all.insert(all.begin(), table.begin(), table.end());
+    return all;
+  }();
+  return program == Program::kPafas ? with_cluster : table;
 }
 
 }  // namespace rayshade

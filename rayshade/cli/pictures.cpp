@@ -9,7 +9,7 @@ namespace rayshade {
 namespace {
 
 constexpr const char* kDataLayers[] = {"depth.Z", "normal.X", "normal.Y", "normal.Z", "object", "samples"};
-constexpr const char* kCostLayers[] = {"tests", "bounds_tests", "microseconds"};
+constexpr const char* kCostLayers[] = {"tests", "bounds_tests", "microseconds", "rays", "tree_rays"};
 
 bool is_rle(FileFormat format) { return format == FileFormat::kRle || format == FileFormat::kRleExponential; }
 
@@ -49,7 +49,7 @@ PictureOutput::PictureOutput(const Options& options, const RenderSettings& setti
                     "-O out.%04d.{}",
                     settings.frames, format_name(format_), format_ == FileFormat::kExr ? "exr" : "png"));
   }
-  for (const auto& extra : {options.layers, options.cost_map}) {
+  for (const auto& extra : {options.layers, options.cost_map, options.fas_dump}) {
     if (extra && settings.frames > 1 && !is_numbered(*extra)) {
       throw UsageError(fmt::format(
           "'{}': with several frames the name needs the number of the frame, as in %04d", *extra));

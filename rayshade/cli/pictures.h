@@ -32,12 +32,13 @@ class PictureOutput {
   /// Writes what is there of a frame beside the real name; nothing where frames go to standard output.
   /// Returns the name of the file, empty if there is none.
   std::string write_partial(const FrameBuffer& picture, int frame);
+  /// The name of a file for this frame: `pattern` with the number of the frame, if it has a place for it.
+  std::string file_name(const std::string& pattern, int frame) const;
   /// After the last frame: the file of appended frames gets its name.
   void finish();
 
  private:
   PictureInfo info(int frame) const;
-  std::string file_name(const std::string& pattern, int frame) const;
   void write_layers(const FrameBuffer& picture, int frame);
   void write_cost_map(const FrameBuffer& picture, int frame);
 

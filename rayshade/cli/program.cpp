@@ -19,6 +19,7 @@
 #include "rayshade/cli/progress.h"
 #include "rayshade/cli/report.h"
 #include "rayshade/cli/signals.h"
+#include "rayshade/cli/tree_svg.h"
 #include "rayshade/lang/parse.h"
 #include "rayshade/render/renderer.h"
 #include "rayshade/scene/provider.h"
@@ -32,7 +33,9 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void complain(const std::string& text) { fmt::print(stderr, "rayshade: {}\n", text); }
+void complain(const Engine& engine, const std::string& text) {
+  fmt::print(stderr, "{}: {}\n", engine.program(), text);
+}
 
 struct CloseFile {
   void operator()(std::FILE* file) const {
@@ -61,7 +64,7 @@ void write_text(const std::string& name, const std::string& text) {
 /// One run of the program, step by step; each step may end it.
 class Run {
  public:
-  explicit Run(Options options) : options_(std::move(options)) {}
+  Run(Options options, Engine& engine) : options_(std::move(options)), engine_(engine) {}
 
   int go() {
     open_report();
@@ -73,7 +76,7 @@ class Run {
     settings_ = resolve_settings(scene_.settings, options_.settings);
     take_report_settings();
     if (options_.action == Action::kRender) return render();
-    Renderer renderer(scene_, settings_, provider_, render_options());
+    Renderer renderer(scene_, settings_, engine_.provider(), render_options());
     if (options_.action == Action::kExplain) return explain(renderer);
     if (!options_.quiet) {
       fmt::print(stderr, "{}: {} primitive{}, {} error{}, {} warning{}\n", scene_name(),
@@ -88,7 +91,7 @@ class Run {
   }
 
  private:
-  std::string scene_name() const { return options_.input.empty() ? "-" : options_.input; }
+  std::string scene_name() const { return options_.scene(); }
   bool chatty() const { return report_.get() != stderr || !options_.quiet; }
 
   void open_report() {
@@ -119,16 +122,7 @@ class Run {
 
   bool read_scene() {
     const Clock::time_point start = Clock::now();
-    ParseOptions parse;
-    parse.preprocessing = options_.preprocess == Preprocess::kNever ? Preprocessing::kNever
-                          : options_.preprocessor_arguments         ? Preprocessing::kAlways
-                                                                    : Preprocessing::kAuto;
-    if (options_.preprocessor_arguments) {
-      parse.preprocessor_arguments = split_arguments(*options_.preprocessor_arguments);
-    }
-    parse.flip_normals = options_.settings.flip_normals;
-    parse.verbose = options_.verbose;
-    ParseResult result = parse_scene(provider_, scene_name(), parse);
+    ParseResult result = parse_scene(engine_.provider(), scene_name(), parsing_options(options_));
     const bool color = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
     const bool quiet = options_.quiet || result.scene.settings.quiet;
     for (const std::string& line : result.prints) fmt::print(stderr, "{}", line);
@@ -143,15 +137,11 @@ class Run {
   }
 
   RenderOptions render_options() const {
-    RenderOptions out;
-    out.threads = options_.threads > 0 ? options_.threads : available_threads();
-    out.block_side = options_.block;
-    out.intersector = options_.intersector;
-    out.fas_memory = options_.fas_memory;
-    out.fas_split = options_.fas_split;
-    out.layers = options_.layers.has_value();
-    out.cost = options_.cost_map.has_value();
-    out.sample_map = options_.sample_map;
+    RenderOptions out = rendering_options(options_, engine_.machine_share());
+    out.report_difference = [this](const std::string& text) {
+      fmt::print(stderr, "{}: error: {}", engine_.program(), text);
+    };
+    engine_.adjust(out);
     return out;
   }
 
@@ -163,7 +153,7 @@ class Run {
     }
     write_text(options_.output.value_or("-"),
                renderer.explain(settings_.first_frame, options_.explain_x, options_.explain_y));
-    return kComplete;
+    return verified(renderer.statistics(), kComplete);
   }
 
   /// The picture's memory against what may be taken, before anything large is allocated.
@@ -194,11 +184,13 @@ class Run {
     }
     if (options_.resume) {
       if (name == "-") throw RenderError("-c needs the name of the picture: -O, or outfile in the scene", {});
-      complain("warning: this version keeps no journal to continue from; rendering from the start");
+      complain(engine_, "warning: this version keeps no journal to continue from; rendering from the start");
     }
     const FrameBufferOptions buffer = output.frame_buffer_options(
         check_memory(output.frame_buffer_options(options_.memory_limit.value_or(available_memory()))));
-    Renderer renderer(scene_, settings_, provider_, render_options());
+    Renderer renderer(scene_, settings_, engine_.provider(), render_options());
+    if (options_.fas_dump && !renderer.eye_tree()) throw UsageError("--fas-dump: " + why_no_eye_tree());
+    run_.program = engine_.program();
     run_.scene = scene_name();
     run_.version = RAYSHADE_VERSION;
     run_.scene_hash = scene_hash(scene_);
@@ -213,6 +205,8 @@ class Run {
     }
 
     FrameBuffer picture(buffer);
+    const PictureFormat format = format_of(picture);
+    engine_.begin({options_, settings_, renderer, format, run_.scene_hash});
     Progress progress(report_.get(), {!chatty(), report_.get() == stderr && isatty(STDERR_FILENO) != 0,
                                       options_.report_frequency.value_or(0), settings_.min_y});
     SignalRequests requests;
@@ -222,39 +216,81 @@ class Run {
       if (i > 0) picture.clear();
       progress.start(settings_.frames > 1 ? fmt::format("frame {} ({} of {})", frame, i + 1, settings_.frames)
                                           : "rendering");
-      complete = renderer.render_frame(frame, picture, requests.stop(), [&](const FrameProgress& now) {
-        progress.update(now);
-        if (requests.take_progress()) progress.print_now(now);
-        if (requests.take_save()) output.write_partial(picture, frame);
-      });
+      complete =
+          engine_.render_frame(renderer, {frame, picture, requests.stop(), [&](const FrameProgress& now) {
+                                            progress.update(now);
+                                            if (requests.take_progress()) progress.print_now(now);
+                                            if (requests.take_save()) output.write_partial(picture, frame);
+                                          }});
       progress.finish();
       if (complete) {
         output.write_frame(picture, frame);
+        if (options_.fas_dump)
+          write_text(output.file_name(*options_.fas_dump, frame), tree_drawing(renderer, picture, frame));
       } else {
         const std::string partial = output.write_partial(picture, frame);
-        complain(partial.empty() ? "stopped; no partial picture is kept on standard output"
-                                 : fmt::format("stopped; the partial picture is {}", partial));
+        complain(engine_, partial.empty() ? "stopped; no partial picture is kept on standard output"
+                                          : fmt::format("stopped; the partial picture is {}", partial));
       }
     }
     if (complete || renderer.statistics().frames > 0) output.finish();
-    report(renderer, complete ? "complete" : "stopped");
-    return complete ? kComplete : kStopped;
+    RenderStatistics statistics = renderer.statistics();
+    engine_.end(statistics);
+    const bool differs = statistics.verify.differing > 0;
+    report(statistics, differs ? "differs" : complete ? "complete" : "stopped");
+    return verified(statistics, complete ? kComplete : kStopped);
   }
 
-  void report(const Renderer& renderer, const char* outcome) {
+  std::string why_no_eye_tree() const {
+    if (options_.intersector != IntersectorKind::kFas)
+      return "there is no tree of eye rays to draw: --intersector fas makes one";
+    if (settings_.aperture > 0)
+      return "there is no tree of eye rays to draw: they do not start at one point, because the camera has "
+             "an aperture";
+    return "there is no tree of eye rays to draw: the scene has so few objects that all are tested";
+  }
+
+  std::string tree_drawing(const Renderer& renderer, const FrameBuffer& picture, int frame) const {
+    TreeDrawing drawing;
+    drawing.width = settings_.window_width();
+    drawing.height = settings_.window_height();
+    drawing.title = fmt::format("Tree of eye rays of {}, frame {}", scene_name(), frame);
+    for (const ClassReport& c : renderer.statistics().intersector.classes) {
+      if (c.rays != ClassReport::Rays::kEye || c.queries() == 0) continue;
+      drawing.note =
+          fmt::format("Of {} eye rays so far, {:.1f} % were answered in the tree.", c.queries(),
+                      100 * static_cast<double>(c.in_tree.rays) / static_cast<double>(c.queries()));
+    }
+    return tree_svg(tree_cells(*renderer.eye_tree(), renderer.camera(), settings_), drawing,
+                    embeddable_png(picture));
+  }
+
+  /// The exit code, after a last word about what --verify found.
+  ExitCode verified(const RenderStatistics& statistics, ExitCode code) const {
+    const VerifyCounts& found = statistics.verify;
+    if (found.differing == 0) return code;
+    complain(engine_, fmt::format("error: of {} rays verified, {} have another answer than brute force gives",
+                                  found.rays(), found.differing));
+    return kDiffers;
+  }
+
+  void report(const RenderStatistics& statistics, const char* outcome) {
     run_.outcome = outcome;
     note_resources(run_, start_);
     if (chatty()) {
-      fmt::print(report_.get(), "{}", statistics_text(renderer.statistics(), run_, options_.verbose));
+      fmt::print(report_.get(), "{}{}", statistics_text(statistics, run_, options_.verbose),
+                 engine_.report_text(options_.verbose));
       std::fflush(report_.get());
     }
     if (options_.stats_file) {
-      write_text(*options_.stats_file, statistics_json(renderer.statistics(), settings_, run_));
+      write_text(*options_.stats_file, statistics_json(statistics, settings_, run_, [this](JsonWriter& json) {
+        engine_.report_json(json);
+      }));
     }
   }
 
   Options options_;
-  FileProvider provider_;
+  Engine& engine_;
   Scene scene_;
   RenderSettings settings_;
   RunSummary run_;
@@ -276,38 +312,38 @@ int guarded(Run& run) {
 
 }  // namespace
 
-int run_program(const std::vector<std::string>& arguments) {
+int run_program(const std::vector<std::string>& arguments, Engine& engine) {
   try {
-    const Options options = parse_options(arguments);
+    const Options options = parse_options(arguments, engine.kind());
     switch (options.action) {
       case Action::kHelp:
-        fmt::print("{}", help_text());
+        fmt::print("{}", help_text(engine.kind()));
         return kComplete;
       case Action::kVersion:
-        fmt::print("rayshade {}\n", RAYSHADE_VERSION);
+        fmt::print("{} {}\n", engine.program(), RAYSHADE_VERSION);
         return kComplete;
       case Action::kManOptions:
-        fmt::print("{}", man_options());
+        fmt::print("{}", man_options(engine.kind()));
         return kComplete;
       case Action::kCompletion:
-        fmt::print("{}", bash_completion());
+        fmt::print("{}", bash_completion(engine.kind()));
         return kComplete;
       default:
         break;
     }
-    Run run(options);
+    Run run(options, engine);
     return guarded(run);
   } catch (const UsageError& error) {
-    complain(error.what());
-    fmt::print(stderr, "Try 'rayshade --help'.\n");
+    complain(engine, error.what());
+    fmt::print(stderr, "Try '{} --help'.\n", engine.program());
     return kUsage;
   } catch (const FormatError& error) {
-    complain(error.what());
+    complain(engine, error.what());
     return kUsage;
   } catch (const std::bad_alloc&) {
-    complain("out of memory");
+    complain(engine, "out of memory");
   } catch (const std::exception& error) {
-    complain(error.what());
+    complain(engine, error.what());
   }
   return kFailed;
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "rayshade/cli/class_report.h"
 #include "rayshade/cli/json.h"
 
 namespace rayshade {
@@ -113,6 +114,8 @@ std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bo
   row("Total prim. intersection tests:",
       tests == 0 ? "0" : fmt::format("{} ({} hit, {:f}%)", tests, test_hits, percent(test_hits, tests)));
   row("Pixels not a number, negative:", fmt::format("{}, {}", s.nan_pixels, s.negative_pixels));
+  if (s.verify_share > 0)
+    row("Rays verified, differing:", fmt::format("{}, {}", s.verify.rays(), s.verify.differing));
   if (verbose) {
     for (const Skipped& skipped : skipped_work(s)) {
       if (skipped.count > 0) row("Skipped:", fmt::format("{} {}", skipped.count, skipped.what));
@@ -122,6 +125,7 @@ std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bo
       if (is_unused) unused += fmt::format("{}{}", unused.empty() ? "" : ", ", name);
     }
     if (!unused.empty()) row("Not used by the scene, never run:", unused);
+    out += classes_text(s);
     count("Samples in halos of blocks:", s.sampling.halo_samples);
     row("Leaves, shared groups:", fmt::format("{}, {}", s.compile.leaves, s.compile.shared_groups));
     row("Reading, compiling, rendering:",
@@ -136,11 +140,12 @@ std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bo
   return out;
 }
 
-std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, const RunSummary& run) {
+std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, const RunSummary& run,
+                            const std::function<void(JsonWriter&)>& more) {
   JsonWriter j;
   const ShadingCounts& c = s.shading;
   j.begin_object();
-  j.value("program", "rayshade").value("version", run.version).value("scene", run.scene);
+  j.value("program", run.program).value("version", run.version).value("scene", run.scene);
   j.value("scene_hash", run.scene_hash).value("outcome", run.outcome);
   j.begin_object("settings");
   j.value("width", r.width).value("height", r.height);
@@ -160,6 +165,7 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
       .value("shaded_hits", c.shaded_hits);
   j.value("shadow_hits", c.shadow_hits).value("transparent_walks", c.transparent_walks);
   j.value("total_reflections", c.total_reflections);
+  j.value("nearest_queries", c.nearest_queries).value("occlusion_queries", c.occlusion_queries);
   j.end_object();
   j.begin_object("sampling");
   j.value("pixels", s.sampling.pixels).value("supersampled", s.sampling.supersampled);
@@ -176,6 +182,13 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
         .end_object();
   }
   j.end_object();
+  write_classes(s, j);
+  if (s.verify_share > 0) {
+    j.begin_object("verification");
+    j.value("share", s.verify_share).value("nearest", s.verify.nearest);
+    j.value("occlusion", s.verify.occlusion).value("differing", s.verify.differing);
+    j.end_object();
+  }
   j.begin_object("skipped");
   for (const Skipped& skipped : skipped_work(s)) j.value(skipped.name, skipped.count);
   j.end_object();
@@ -196,6 +209,7 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
   j.value("cpu_seconds", run.total_cpu_seconds).value("wall_seconds", run.wall_seconds);
   j.value("peak_memory_bytes", run.peak_memory);
   j.end_object();
+  if (more) more(j);
   j.end_object();
   return j.text();
 }

@@ -386,6 +386,7 @@ std::unique_ptr<CompiledScene> compile_scene(const Scene& scene, Provider& provi
   Compiler(scene, provider, options, *out).run();
   out->shutter = options.shutter;
   out->frame = options.frame;
+  out->threads = options.threads;
   out->rebuild(options.hierarchies);
   return out;
 }

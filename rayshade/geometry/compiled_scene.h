@@ -22,6 +22,10 @@
 #include "rayshade/scene/provider.h"
 #include "rayshade/scene/scene.h"
 
+namespace fas {
+class Hierarchy;
+}
+
 namespace rayshade {
 
 enum class LeafKind : std::uint8_t {
@@ -42,6 +46,15 @@ enum class LeafKind : std::uint8_t {
   kInstance,
 };
 inline constexpr int kLeafKinds = static_cast<int>(LeafKind::kInstance) + 1;
+
+/// What the kind is called in reports about single objects.
+constexpr const char* name_of(LeafKind kind) {
+  constexpr const char* kNames[kLeafKinds] = {"plane",           "sphere",      "box",     "disc",
+                                              "cylinder",        "cone",        "torus",   "triangle",
+                                              "smooth triangle", "uv triangle", "polygon", "blob",
+                                              "height field",    "CSG object",  "instance"};
+  return kNames[static_cast<int>(kind)];
+}
 
 /// What the untextured surfaces below a leaf may be (rule 5); CSG and instances may be both.
 enum Opacity : std::uint8_t { kOpaque = 1, kTransparent = 2, kAnyOpacity = 3 };
@@ -89,8 +102,6 @@ struct Instance {
   std::uint32_t group = 0;
 };
 
-class Hierarchy;
-
 struct Group {
   std::uint32_t first = 0, count = 0;  ///< leaves; unbounded ones come first
   std::uint32_t unbounded = 0;         ///< how many are unbounded
@@ -99,7 +110,7 @@ struct Group {
   double condition = 1;                ///< largest growth of rounding errors by the placements below
   bool few_simple = false;             ///< at most two bounded leaves, cheaper to test than a box
   bool solid = false;                  ///< one closed solid: whoever leaves it was inside its bounds
-  std::shared_ptr<const Hierarchy> hierarchy;  ///< none where a loop over the leaves is as good
+  std::shared_ptr<const fas::Hierarchy> hierarchy;  ///< none where a loop over the leaves is as good
 };
 
 /// An error found while compiling: a height field that cannot be read, a structure that cannot be held.
@@ -113,6 +124,7 @@ struct CompileOptions {
   Interval shutter;           ///< of the first frame
   double frame = 0;
   bool hierarchies = true;  ///< false: loops over all leaves everywhere (the oracle)
+  int threads = 1;          ///< at most so many build hierarchies; the result does not depend on it
 };
 
 /// Counts for the statistics.
@@ -186,6 +198,7 @@ class CompiledScene {
 
   Interval shutter{};
   double frame = 0;
+  int threads = 1;  ///< CompileOptions::threads
 
  private:
   friend std::unique_ptr<CompiledScene> compile_scene(const Scene&, Provider&, const CompileOptions&);

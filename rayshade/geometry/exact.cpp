@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // exact(leaf, ray, interval), and the loops over groups.
 #include <numeric>
+#include <utility>
 
-#include "rayshade/geometry/hierarchy.h"
+#include "fas/hierarchy.h"
 #include "rayshade/geometry/trace_context.h"
 
 namespace rayshade {
@@ -116,6 +117,8 @@ bool occludes(TraceContext& context, LeafId id, const Leaf& leaf, const Ray& ray
 template <class Limit, class Test>
 bool over_group(TraceContext& context, const Group& group, const Ray& ray, double lo, Opacity mask,
                 const Limit& limit, const Test& test) {
+  // Of the world: not of the groups below the leaves that are tested here.
+  const fas::Cut cut = std::exchange(context.cut, {});
   if (context.scratch.brute_force) return test(group.first, group.first + group.count);
   const LeafId bounded = group.first + group.unbounded;
   if (group.unbounded > 0 && test(group.first, bounded)) return true;
@@ -126,16 +129,25 @@ bool over_group(TraceContext& context, const Group& group, const Ray& ray, doubl
     return clip_to_box(group.bounds, group.condition, ray, lo, limit()) &&
            test(bounded, group.first + group.count);
   }
-  BoxProbe probe;
-  if (!make_probe(group.bounds, group.condition, ray, lo, limit(), probe)) return false;
+  fas::BoxProbe probe;
+  const double o[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
+  const double d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
+  if (!fas::make_probe(group.hierarchy->bounds(), group.condition, o, d, lo, limit(), probe)) return false;
   if (!probe.usable) return test(bounded, group.first + group.count);
-  return traverse(*group.hierarchy, probe, mask, context.bounds_tests, limit,
-                  [&](std::uint32_t first, std::uint32_t count) {
-                    return test(bounded + first, bounded + first + count);
-                  });
+  return fas::traverse(*group.hierarchy, cut, probe, mask, context.bounds_tests, limit,
+                       [&](std::uint32_t first, std::uint32_t count) {
+                         return test(bounded + first, bounded + first + count);
+                       });
 }
 
 }  // namespace
+
+bool clip_to_box(const Bounds3& box, double condition, const Ray& ray, double lo, double hi) {
+  const double o[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
+  const double d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
+  return fas::may_meet({{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}}, condition, o, d, lo,
+                       hi);
+}
 
 bool improve_by_leaf(TraceContext& context, LeafId id, const Ray& ray, double lo, Opacity mask,
                      std::uint64_t base, Hit& best) {
@@ -179,8 +191,9 @@ bool group_occludes(TraceContext& context, std::uint32_t index, const Ray& ray, 
 }
 
 void ask_world(const CompiledScene& scene, const NearestQuery& query, NearestAnswer& answer,
-               TraceScratch& scratch) {
+               TraceScratch& scratch, const fas::Cut& cut) {
   TraceContext context(scene, scratch);
+  context.cut = cut;
   start_search(answer.hit, query.hi);
   answer.found = improve_by_group(context, 0, query.ray, query.lo, query.mask, 0, answer.hit) &&
                  before_far_limit(answer.hit, query.hi);
@@ -189,8 +202,9 @@ void ask_world(const CompiledScene& scene, const NearestQuery& query, NearestAns
 }
 
 void ask_world(const CompiledScene& scene, const OcclusionQuery& query, OcclusionAnswer& answer,
-               TraceScratch& scratch) {
+               TraceScratch& scratch, const fas::Cut& cut) {
   TraceContext context(scene, scratch);
+  context.cut = cut;
   answer.occluded = group_occludes(context, 0, query.ray, query.lo, query.hi, query.mask);
   answer.others = query.mask != kAnyOpacity;  // who knows
   answer.tests = context.tests;

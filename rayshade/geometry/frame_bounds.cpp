@@ -3,8 +3,8 @@
 // are done bottom up, each after all that its leaves refer to.
 #include <algorithm>
 
+#include "fas/hierarchy.h"
 #include "rayshade/geometry/compiled_scene.h"
-#include "rayshade/geometry/hierarchy.h"
 #include "rayshade/geometry/rank.h"
 #include "rayshade/geometry/resolve.h"
 
@@ -206,7 +206,7 @@ void CompiledScene::rebuild_group(Group& group, bool hierarchies) {
   group.hierarchy.reset();
   group.condition = 1;
   std::vector<LeafId> unbounded, bounded, empty;
-  std::vector<Bounds3> leaf_boxes;
+  std::vector<fas::Bounds> leaf_boxes;
   leaf_boxes.reserve(group.count);
   bounded.reserve(group.count);
   for (LeafId id = group.first; id < group.first + group.count; ++id) {
@@ -219,7 +219,7 @@ void CompiledScene::rebuild_group(Group& group, bool hierarchies) {
     } else {
       group.bounds.add(box);
       bounded.push_back(id);
-      leaf_boxes.push_back(box);
+      leaf_boxes.push_back({{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}});
     }
   }
   group.unbounded = static_cast<std::uint32_t>(unbounded.size());
@@ -236,9 +236,7 @@ void CompiledScene::rebuild_group(Group& group, bool hierarchies) {
   if (hierarchies && bounded.size() > kLoopLeaves) {
     std::vector<std::uint8_t> opacities(bounded.size());
     for (std::size_t i = 0; i < bounded.size(); ++i) opacities[i] = leaves[bounded[i]].opacity;
-    auto hierarchy = std::make_shared<Hierarchy>(std::move(leaf_boxes), opacities, group.bounds);
-    order = hierarchy->take_order();
-    group.hierarchy = std::move(hierarchy);
+    group.hierarchy = std::make_shared<fas::Hierarchy>(std::move(leaf_boxes), opacities, threads, order);
   }
   std::vector<Leaf> sorted;
   sorted.reserve(group.count);

@@ -12,7 +12,15 @@
 
 namespace rayshade {
 
+struct IntersectorReport;
+
 enum class RayKind : std::uint8_t { kEye, kReflected, kTransmitted, kShadow };
+
+/// What the kind is called in reports.
+constexpr const char* name_of(RayKind kind) {
+  constexpr const char* kNames[] = {"eye ray", "reflected ray", "transmitted ray", "shadow ray"};
+  return kNames[static_cast<int>(kind)];
+}
 
 struct NearestQuery {
   Ray ray;
@@ -59,6 +67,10 @@ class Intersector {
   virtual std::size_t preferred_span() const { return 64; }
   /// The compiled scene has been prepared for another frame; scratches used before must not be used again.
   virtual void scene_changed() {}
+  /// Adds to `into` what was done with this scratch, which must not be in use; once for each scratch.
+  virtual void report(const TraceScratch& /*scratch*/, IntersectorReport& /*into*/) const {}
+  /// The tree of rays from the eye's point; null where there is none.
+  virtual const fas::HyperTree* eye_tree() const { return nullptr; }
 };
 
 /// Tests every leaf for every ray; stays for ever as the oracle.
@@ -66,22 +78,26 @@ std::unique_ptr<Intersector> make_brute_force(const CompiledScene& scene);
 /// A bounding hierarchy per group.
 std::unique_ptr<Intersector> make_hierarchy(const CompiledScene& scene);
 
-/// A class of rays without extent in space: all pass through one point, or all are parallel.
+/// A class of rays: all pass through one point, all are parallel, or they have extent in space.
 struct RayClass {
   enum class Kind : std::uint8_t { kSpread, kPoint, kParallel };
-  Kind kind = Kind::kSpread;  ///< with extent in space
-  Vec3 point;                 ///< kPoint: where they pass; kParallel: their direction, unit length
+  Kind kind = Kind::kSpread;
+  Vec3 point;      ///< kPoint: where they pass; kParallel: their direction, unit length
+  Bounds3 bounds;  ///< kSpread: where they start, or, rays toward a light, end; empty: anywhere
 };
 
 struct FasOptions {
-  RayClass eye;                                 ///< of eye rays; kSpread: with a lens
+  RayClass eye;                                 ///< of eye rays
   std::vector<RayClass> lights;                 ///< of shadow rays, by their light number
   std::size_t memory = std::size_t{256} << 20;  ///< bytes for all trees
   fas::Split split = fas::Split::kAdaptive;
+  double rays = 1e6;   ///< expected of every class, about: how much building may pay
+  bool choose = true;  ///< false: all rays go through the trees of their classes, even where the hierarchy is
+                       ///< faster; so does Split::kAlways
 };
 
-/// Adaptive subdivision: a hyper-tree per class of rays over the world's leaves, the hierarchy for all other
-/// rays. `scene` must have hierarchies.
+/// Adaptive subdivision: a hyper-tree per class of rays over the world's leaves. `scene` must have
+/// hierarchies.
 std::unique_ptr<Intersector> make_fas(const CompiledScene& scene, const FasOptions& options);
 
 }  // namespace rayshade

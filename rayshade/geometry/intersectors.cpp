@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "rayshade/geometry/intersector.h"
+#include "rayshade/geometry/intersector_report.h"
 #include "rayshade/geometry/pack_tracer.h"
 #include "rayshade/geometry/trace_context.h"
 
@@ -87,6 +88,11 @@ class GroupIntersector : public Intersector {
       }
     }
     for (; i < queries.size(); ++i) ask_world(scene_, queries[i], answers[i], scratch);
+  }
+
+  void report(const TraceScratch& /*scratch*/, IntersectorReport& into) const override {
+    using Method = IntersectorReport::Method;
+    into.method = brute_force_ ? Method::kBruteForce : in_packs_ ? Method::kPacks : Method::kHierarchy;
   }
 
  private:

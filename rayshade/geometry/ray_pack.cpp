@@ -256,8 +256,10 @@ RAYSHADE_LANES Found test_triangle(const Vec3 (&vertices)[3], const Rays& r, std
   }
   Found out = found(inside, constant(0));
   if (hn::AllFalse(D(), inside)) return out;
-  const V3 n = cross3(minus(p[1], p[0]), minus(p[2], p[1]));
+  const V3 e1 = minus(p[1], p[0]), e2 = minus(p[2], p[1]), n = cross3(e1, e2);
   const V slope = dot3(n, r.d);
+  const V known = constant(kWellKnown) * (dot3(e1, e1) * dot3(e2, e2)) * dot3(r.d, r.d);
+  unsure = hn::Or(unsure, hn::And(inside, hn::Not(hn::Ge(slope * slope, known))));
   out.t = dot3(n, minus(p[0], r.o)) / slope;
   const M within = hn::And(hn::Ge(out.t, r.lo), hn::Le(out.t, r.hi));
   const V sum = w[0] + w[1] + w[2];

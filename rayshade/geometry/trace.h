@@ -48,6 +48,19 @@ class MotionCache {
   std::vector<std::vector<Entry>> placements_, levels_;
 };
 
+/// For which sample of which pixel of the screen a ray is traced.
+struct RayOwner {
+  std::uint32_t x = 0, y = 0, sample = 0;
+};
+
+/// Told by whoever asks an intersector, for reports about single queries.
+class QueryOwners {
+ public:
+  virtual ~QueryOwners() = default;
+  /// `query`: its number in the span at hand.
+  virtual RayOwner owner(std::size_t query) const = 0;
+};
+
 /// What one thread owns while tracing.
 struct TraceScratch {
   MotionCache motion;
@@ -55,6 +68,7 @@ struct TraceScratch {
   bool brute_force = false;                 ///< loop over all leaves, ignore hierarchies
   std::unique_ptr<fas::ThreadState> trees;  ///< what this thread remembers of the trees of an intersector
   std::shared_ptr<void> batch;              ///< room of an intersector to sort spans in
+  const QueryOwners* owners = nullptr;      ///< of the span at hand; null: unknown
 };
 
 /// The nearest hit of one leaf with t beyond `lo` (open or closed as objects.md 2 says) and t <= hi. A

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "fas/hierarchy.h"
 #include "rayshade/geometry/intersector.h"
 #include "rayshade/geometry/trace.h"
 
@@ -17,6 +18,7 @@ struct TraceContext {
   std::uint32_t tests = 0;
   std::uint32_t bounds_tests = 0;
   InstancePath instances;  ///< entered so far, outermost first
+  fas::Cut cut;            ///< where the traversal of the next group's hierarchy, the world's, starts
 
   TraceContext(const CompiledScene& s, TraceScratch& c) : scene(s), scratch(c) {}
   TraceContext(const TraceContext&) = delete;
@@ -34,6 +36,9 @@ inline void start_search(Hit& best, double hi) {
   best.rank = std::numeric_limits<std::uint64_t>::max();
 }
 
+/// Whether the ray may meet the box within (lo, hi), whatever exact tests of leaves under placements of that
+/// condition (Group::condition) round.
+bool clip_to_box(const Bounds3& box, double condition, const Ray& ray, double lo, double hi);
 bool improve_by_leaf(TraceContext& context, LeafId leaf, const Ray& ray, double lo, Opacity mask,
                      std::uint64_t base, Hit& best);
 /// Whether a leaf that is within `mask` as a whole lies between lo and hi.
@@ -45,11 +50,12 @@ bool improve_by_csg(TraceContext& context, const Leaf& leaf, const Ray& ray, dou
                     Hit& best);
 bool group_occludes(TraceContext& context, std::uint32_t group, const Ray& ray, double lo, double hi,
                     Opacity mask);
-/// One query, answered by the world's group alone.
+/// One query, answered by the world's group alone. `cut`: of the world's hierarchy, if all that the ray could
+/// meet is below it.
 void ask_world(const CompiledScene& scene, const NearestQuery& query, NearestAnswer& answer,
-               TraceScratch& scratch);
+               TraceScratch& scratch, const fas::Cut& cut = {});
 void ask_world(const CompiledScene& scene, const OcclusionQuery& query, OcclusionAnswer& answer,
-               TraceScratch& scratch);
+               TraceScratch& scratch, const fas::Cut& cut = {});
 /// The enter test of objects.md 3 for a primitive.
 bool primitive_enters(const CompiledScene& scene, const Leaf& leaf, const Ray& local, double lo,
                       const ShapeHit& hit);

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "rayshade/geometry/tree_candidates.h"
 
-#include <cmath>
-
-#include "rayshade/geometry/hierarchy.h"
-
 namespace rayshade {
 namespace {
 
@@ -56,21 +52,10 @@ void place(fas::Geometry& geometry, const Affine& map) {
 }  // namespace
 
 TreeCandidates::TreeCandidates(const CompiledScene& scene, std::uint32_t group)
-    : scene_(scene), group_(scene.groups[group]), first_(group_.first + group_.unbounded) {
-  // Children come after their parents.
-  const auto& nodes = group_.hierarchy->nodes();
-  below_.assign(nodes.size(), 0);
-  for (std::size_t i = nodes.size(); i-- > 0;) {
-    for (int lane = 0; lane < Hierarchy::kWidth; ++lane) {
-      if (nodes[i].opacity[lane] == 0) continue;
-      const std::uint32_t child = nodes[i].child[lane];
-      below_[i] += (child & Hierarchy::kLeafBit) != 0 ? Hierarchy::count(child) : below_[child];
-    }
-  }
-}
-
-std::uint32_t TreeCandidates::count() const { return group_.count - group_.unbounded; }
-fas::Bounds TreeCandidates::bounds() const { return to_bounds(group_.bounds); }
+    : HierarchyCandidates(*scene.groups[group].hierarchy,
+                          scene.groups[group].count - scene.groups[group].unbounded),
+      scene_(scene),
+      first_(scene.groups[group].first + scene.groups[group].unbounded) {}
 
 void TreeCandidates::geometry(std::uint32_t primitive, fas::Geometry& out) const {
   const LeafId id = first_ + primitive;
@@ -112,37 +97,6 @@ void TreeCandidates::geometry(std::uint32_t primitive, fas::Geometry& out) const
       return;
   }
   if (leaf.placement != kNone) place(out, scene_.placements[leaf.placement].map.forward);
-}
-
-int TreeCandidates::open(std::uint32_t subtree, Child (&out)[kMostChildren]) const {
-  const Hierarchy& hierarchy = *group_.hierarchy;
-  std::uint32_t node = 0;
-  if (subtree != kWhole) {
-    const std::uint32_t place = subtree & ~kSubtree;
-    const std::uint32_t child = hierarchy.nodes()[place / 4].child[place % 4];
-    if ((child & Hierarchy::kLeafBit) != 0) {
-      const auto count = static_cast<int>(Hierarchy::count(child));
-      for (int i = 0; i < count; ++i) out[i].entry = Hierarchy::first(child) + static_cast<std::uint32_t>(i);
-      return count;
-    }
-    node = child;
-  }
-  const Hierarchy::Node& in = hierarchy.nodes()[node];
-  const Vec3 center = group_.bounds.center();
-  int count = 0;
-  for (int lane = 0; lane < Hierarchy::kWidth; ++lane) {
-    if (in.opacity[lane] == 0) continue;
-    Child& child = out[count++];
-    child.entry = kSubtree | (node * 4 + static_cast<std::uint32_t>(lane));
-    child.below = (in.child[lane] & Hierarchy::kLeafBit) != 0 ? Hierarchy::count(in.child[lane])
-                                                              : below_[in.child[lane]];
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto i = static_cast<std::size_t>(axis);
-      child.box.lo[i] = center[axis] + static_cast<double>(in.planes[0][axis][lane]);
-      child.box.hi[i] = center[axis] + static_cast<double>(in.planes[1][axis][lane]);
-    }
-  }
-  return count;
 }
 
 }  // namespace rayshade

@@ -84,13 +84,27 @@ void BlockRenderer::trace_samples() {
     trace_range(0, samples_.size());
     return;
   }
-  microseconds_.resize(samples_.size());
+  costs_.resize(samples_.size());
+  const auto queries = [&] { return tree_.counts().queries(); };
+  const auto in_trees = [&] { return tree_.scratch().trees ? tree_.scratch().trees->rays() : 0; };
   for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const std::uint64_t queries_before = queries(), in_trees_before = in_trees();
     const auto start = std::chrono::steady_clock::now();
     trace_range(i, 1);
-    microseconds_[i] =
-        std::chrono::duration<float, std::micro>(std::chrono::steady_clock::now() - start).count();
+    const auto end = std::chrono::steady_clock::now();
+    costs_[i] = {std::chrono::duration<float, std::micro>(end - start).count(),
+                 static_cast<float>(queries() - queries_before),
+                 static_cast<float>(in_trees() - in_trees_before)};
   }
+}
+
+void BlockRenderer::add_cost(const SampleResult& result, const SampleCost* cost, BlockPixels::Layer& layer) {
+  layer.tests += static_cast<float>(result.tests);
+  layer.bounds_tests += static_cast<float>(result.bounds_tests);
+  if (!cost) return;
+  layer.microseconds += cost->microseconds;
+  layer.rays += cost->rays;
+  layer.tree_rays += cost->tree_rays;
 }
 
 void BlockRenderer::render_single(const PixelRect& rect) {
@@ -116,9 +130,9 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
   const PixelRect outer = refine ? halo(rect, kRefinementReach, settings.width, settings.height) : rect;
   render_single(outer);
   const std::vector<SampleResult> single(std::move(results_));
-  const std::vector<float> single_time(std::move(microseconds_));
+  const std::vector<SampleCost> single_cost(std::move(costs_));
   results_ = {};
-  microseconds_ = {};
+  costs_ = {};
   counts_.halo_samples += single.size() - pixels;
   const auto outer_index = [&](int x, int y) {
     return static_cast<std::size_t>(y - outer.y0) * outer.width() + (x - outer.x0);
@@ -140,9 +154,7 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
         BlockPixels::Layer& layer = out.layers[index];
         note_layer(one, frame_.numbers, layer);
         layer.samples = 1;
-        layer.tests = static_cast<float>(one.tests);
-        layer.bounds_tests = static_cast<float>(one.bounds_tests);
-        if (frame_.cost) layer.microseconds = single_time[i];
+        add_cost(one, frame_.cost ? &single_cost[i] : nullptr, layer);
       }
     }
   }
@@ -165,7 +177,7 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
   const auto flush = [&] {
     trace_samples();
     const SampleResult* result = results_.data();
-    const float* time = microseconds_.data();
+    const SampleCost* cost = costs_.data();
     for (const std::size_t p : chosen) {
       const int x = rect.x0 + static_cast<int>(p % static_cast<std::size_t>(rect.width()));
       const int y = rect.y0 + static_cast<int>(p / static_cast<std::size_t>(rect.width()));
@@ -179,9 +191,7 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
         sum += weight * sample.color;
         alpha += sample.hit ? weight : 0.0;
         if (!layered || k == reused) continue;
-        out.layers[p].tests += static_cast<float>(sample.tests);
-        out.layers[p].bounds_tests += static_cast<float>(sample.bounds_tests);
-        if (frame_.cost) out.layers[p].microseconds += *time++;
+        add_cost(sample, frame_.cost ? cost++ : nullptr, out.layers[p]);
       }
       store(&out.rgba[4 * p], sum, frame_.sample_map ? 1.0 : alpha);
       if (layered) out.layers[p].samples = static_cast<float>(count);

@@ -35,6 +35,8 @@ struct BlockPixels {
     float tests = 0;  ///< exact tests and bounds tests of all rays of the pixel
     float bounds_tests = 0;
     float microseconds = 0;
+    float rays = 0;       ///< queries of all rays of the pixel
+    float tree_rays = 0;  ///< of these: answered by trees
   };
   std::vector<double> rgba;   ///< 4 per pixel: linear colour and alpha
   std::vector<Layer> layers;  ///< empty unless layers or cost are wanted
@@ -65,7 +67,12 @@ class BlockRenderer {
   SamplingCounts counts_;
   std::vector<EyeSample> samples_;
   std::vector<SampleResult> results_;
-  std::vector<float> microseconds_;  ///< per sample, when costs are wanted
+  /// Of one sample, beside what SampleResult counts.
+  struct SampleCost {
+    float microseconds = 0, rays = 0, tree_rays = 0;
+  };
+  static void add_cost(const SampleResult& result, const SampleCost* cost, BlockPixels::Layer& layer);
+  std::vector<SampleCost> costs_;  ///< per sample, when costs are wanted
 };
 
 }  // namespace rayshade

@@ -9,44 +9,6 @@ namespace {
 std::string text_of(const Vec3& v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z); }
 std::string text_of(const Color& c) { return fmt::format("[{:.6f} {:.6f} {:.6f}]", c.r, c.g, c.b); }
 
-const char* name_of(RayKind kind) {
-  switch (kind) {
-    case RayKind::kEye:
-      return "eye ray";
-    case RayKind::kReflected:
-      return "reflected ray";
-    case RayKind::kTransmitted:
-      return "transmitted ray";
-    case RayKind::kShadow:
-      return "shadow ray";
-  }
-  return "ray";
-}
-
-const char* name_of(LightKind kind) {
-  switch (kind) {
-    case LightKind::kPoint:
-      return "point";
-    case LightKind::kDirectional:
-      return "directional";
-    case LightKind::kSpot:
-      return "spot";
-    case LightKind::kExtended:
-      return "extended";
-    case LightKind::kArea:
-      return "area";
-  }
-  return "light";
-}
-
-const char* name_of(LeafKind kind) {
-  static constexpr const char* kNames[] = {"plane",           "sphere",      "box",     "disc",
-                                           "cylinder",        "cone",        "torus",   "triangle",
-                                           "smooth triangle", "uv triangle", "polygon", "blob",
-                                           "height field",    "CSG object",  "instance"};
-  return kNames[static_cast<int>(kind)];
-}
-
 }  // namespace
 
 std::string ExplainText::object_name(const Hit& hit) const {
@@ -93,10 +55,8 @@ void ExplainText::on_hit(const HitEvent& event) {
 }
 
 void ExplainText::on_light(const LightEvent& event) {
-  const ShadingLight& light = frame_.shading.lights[event.light];
-  const std::size_t written = frame_.shading.lights.size() - event.light;
   std::string line =
-      fmt::format("light {} ({}): cosine {:.6g}, ", written, name_of(light.kind), event.cosine);
+      fmt::format("{}: cosine {:.6g}, ", light_name(frame_.shading.lights, event.light), event.cosine);
   if (event.skipped)
     line += "no effect";
   else if (event.arriving == Color{})

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A scene ready to be rendered, and the threads that render its frames.
 //
-// Blocks are handed to threads by a counter; a finished block is converted to the picture's format at once.
-// No sum depends on which thread did what when. A stop request ends after the blocks at hand, so that what is
-// in the frame buffer is whole blocks.
+// Blocks come from a feed; a finished block is converted to the picture's format at once. No sum depends on
+// which thread did what when. A stop request ends after the blocks at hand, so that what is in the frame
+// buffer is whole blocks.
 #pragma once
 
 #include <atomic>
@@ -13,6 +13,8 @@
 
 #include "rayshade/image/frame_buffer.h"
 #include "rayshade/render/block_renderer.h"
+#include "rayshade/render/frame_crew.h"
+#include "rayshade/render/frame_job.h"
 #include "rayshade/render/statistics.h"
 #include "rayshade/scene/provider.h"
 #include "rayshade/scene/scene.h"
@@ -30,16 +32,12 @@ struct RenderOptions {
   /// Puts an intersector of one's own around (or in place of) the one made: to record or to check its
   /// answers.
   std::function<std::unique_ptr<Intersector>(const CompiledScene&, std::unique_ptr<Intersector>)> wrap;
+  /// Share of all queries that brute force is asked again (VerifyingIntersector); 0: none, at no cost.
+  double verify = 0;
+  std::function<void(const std::string&)> report_difference;  ///< VerifyOptions::report
   bool layers = false;
   bool cost = false;
   bool sample_map = false;  ///< alpha tells which pixels are fully sampled
-};
-
-/// How far a frame is.
-struct FrameProgress {
-  std::int64_t blocks_done = 0, blocks = 0;
-  std::int64_t pixels_done = 0, pixels = 0;
-  std::int64_t rows_done = 0;  ///< rows of the window that are complete from the top
 };
 
 /// An error while preparing or rendering, with its place where there is one.
@@ -57,15 +55,23 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Renders a frame into `picture` (of the size of the window). Returns false if `stop` became true before
-  /// the end. `progress` is called from the calling thread, a few times per second. Throws RenderError.
-  bool render_frame(int frame, FrameBuffer& picture, const std::atomic<bool>& stop,
-                    const std::function<void(const FrameProgress&)>& progress);
+  /// Renders what is missing of a frame. Returns false if the job was stopped before the end. Throws
+  /// RenderError.
+  bool render_frame(const FrameJob& job);
+  /// Prepares a frame and sets the threads to work on the blocks of a feed. One crew at a time; it and the
+  /// feed end before the renderer does. Throws RenderError.
+  std::unique_ptr<FrameCrew> start_frame(int frame, const PictureFormat& format, BlockFeed& feed,
+                                         int threads);
+  /// After the feed has ended: waits for the crew. Throws RenderError.
+  void finish_frame(FrameCrew& crew);
   /// The ray tree of one pixel as text.
   std::string explain(int frame, int x, int y);
 
   const RenderStatistics& statistics() const { return statistics_; }
   const CompiledScene& compiled() const { return *compiled_; }
+  const Camera& camera() const { return *camera_; }
+  /// The tree of eye rays as it is now; null where there is none. Not while a frame is rendered.
+  const fas::HyperTree* eye_tree() const { return intersector_->eye_tree(); }
   /// The classes of rays of this scene, as make_fas takes them.
   FasOptions fas_options() const;
 
@@ -79,6 +85,7 @@ class Renderer {
   std::unique_ptr<CompiledScene> compiled_;
   std::unique_ptr<CompiledTextures> textures_;
   std::unique_ptr<Intersector> intersector_;
+  const VerifyingIntersector* verifier_ = nullptr;  ///< intersector_, if that is one
   std::unique_ptr<Camera> camera_;
   std::unique_ptr<SampleGrid> grid_;
   FrameScene frame_;
@@ -90,7 +97,8 @@ std::uint64_t estimate_picture_bytes(const RenderSettings& settings, std::size_t
 /// Bytes that this process may still take: the smallest of the machine's available memory, the limit of its
 /// control group, and its address space limit.
 std::uint64_t available_memory();
-/// Threads that this process may use: affinity mask, control group quota, SLURM_CPUS_PER_TASK.
-int available_threads();
+/// Threads that this process may use: affinity mask, control group quota, SLURM_CPUS_PER_TASK. Where `share`
+/// processes of one job are on this machine, what is not already given to each of them is divided (rule 19).
+int available_threads(int share = 1);
 
 }  // namespace rayshade

@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "rayshade/geometry/compiled_scene.h"
+#include "rayshade/geometry/intersector_report.h"
 #include "rayshade/geometry/trace.h"
+#include "rayshade/geometry/verify.h"
 #include "rayshade/shading/counts.h"
 
 namespace rayshade {
@@ -30,6 +33,10 @@ struct RenderStatistics {
   ShadingCounts shading;
   SamplingCounts sampling;
   CompileCounts compile;
+  IntersectorReport intersector;
+  std::vector<std::string> light_names;  ///< of ClassReport::light
+  VerifyCounts verify;
+  double verify_share = 0;  ///< of queries that were asked again of brute force
   std::uint64_t nan_pixels = 0, negative_pixels = 0;
   std::uint64_t peak_tree_nodes = 0;
   double compile_seconds = 0;  ///< wall clock

@@ -34,6 +34,12 @@ class Camera {
     return {eye_ + shift, normalize(focal_distance_ * direction(u, v) - shift)};
   }
 
+  /// Where the rays of the lens start.
+  Bounds3 lens_bounds() const {
+    const Vec3 reach = aperture_ * (abs(right_) + abs(up_));
+    return {eye_ - reach, eye_ + reach};
+  }
+
   /// The time of sample number `s` in a frame: the start of its slice of the shutter interval, moved by `xi`
   /// in [0, 1) of a slice. Always the start of the frame without a shutter.
   double time(int frame, int s, double xi) const {

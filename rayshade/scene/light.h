@@ -11,6 +11,12 @@ namespace rayshade {
 
 enum class LightKind : std::uint8_t { kPoint, kDirectional, kSpot, kExtended, kArea };
 
+/// The keyword of the language.
+constexpr const char* name_of(LightKind kind) {
+  constexpr const char* kNames[] = {"point", "directional", "spot", "extended", "area"};
+  return kNames[static_cast<int>(kind)];
+}
+
 struct Light {
   LightKind kind = LightKind::kPoint;
   Color intensity{1, 1, 1};

@@ -15,6 +15,9 @@ struct ShadingCounts {
   std::uint64_t shadow_hits = 0;        ///< shadow rays whose way met something
   std::uint64_t transparent_walks = 0;  ///< shadow rays that were followed through transparent surfaces
   std::uint64_t total_reflections = 0;
+  // What the intersector was asked; a shadow ray through transparent surfaces asks several times:
+  std::uint64_t nearest_queries = 0;
+  std::uint64_t occlusion_queries = 0;
   // Skipped because it could not change the picture:
   std::uint64_t skipped_back_lights = 0;  ///< light behind an opaque surface
   std::uint64_t skipped_dark_lights =
@@ -33,6 +36,8 @@ struct ShadingCounts {
     shadow_hits += o.shadow_hits;
     transparent_walks += o.transparent_walks;
     total_reflections += o.total_reflections;
+    nearest_queries += o.nearest_queries;
+    occlusion_queries += o.occlusion_queries;
     skipped_back_lights += o.skipped_back_lights;
     skipped_dark_lights += o.skipped_dark_lights;
     skipped_unshadowed += o.skipped_unshadowed;
@@ -40,6 +45,7 @@ struct ShadingCounts {
     skipped_depth += o.skipped_depth;
     skipped_textures += o.skipped_textures;
   }
+  std::uint64_t queries() const { return nearest_queries + occlusion_queries; }
   std::uint64_t total_rays() const { return eye_rays + shadow_rays + reflected_rays + transmitted_rays; }
 };
 

@@ -57,13 +57,30 @@ std::vector<ShadingLight> prepare_lights(const Scene& scene) {
   return lights;
 }
 
+std::string light_name(const std::vector<ShadingLight>& lights, std::size_t light) {
+  return "light " + std::to_string(lights.size() - light) + " (" + name_of(lights[light].kind) + ")";
+}
+
 RayClass shadow_class(const ShadingLight& light) {
   switch (light.kind) {
     case LightKind::kPoint:
     case LightKind::kSpot:
-      return {RayClass::Kind::kPoint, light.position};
+      return {RayClass::Kind::kPoint, light.position, {}};
     case LightKind::kDirectional:
-      return {RayClass::Kind::kParallel, light.position};
+      return {RayClass::Kind::kParallel, light.position, {}};
+    case LightKind::kArea: {
+      RayClass out;
+      for (const Vec3& corner : {Vec3{}, light.edge_u, light.edge_v, light.edge_u + light.edge_v})
+        out.bounds.add(light.position + corner);
+      return out;
+    }
+    case LightKind::kExtended: {
+      // Targets lie in a square of that half side, turned toward the point (extended_target).
+      const double r = std::sqrt(2) * light.radius;
+      RayClass out;
+      out.bounds = {light.position - Vec3{r, r, r}, light.position + Vec3{r, r, r}};
+      return out;
+    }
     default:
       return {};
   }

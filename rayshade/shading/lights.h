@@ -3,6 +3,7 @@
 // their definition), area lights split into their cells, constants computed once.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "rayshade/geometry/intersector.h"
@@ -27,6 +28,10 @@ struct ShadingLight {
 
 /// All lights of the scene (the default light where it defines none), in evaluation order.
 std::vector<ShadingLight> prepare_lights(const Scene& scene);
+
+/// What a light is called in reports, as "light 2 (spot)": numbered from 1 in the order of definition, every
+/// cell of an area light by itself. `light`: index in `lights`.
+std::string light_name(const std::vector<ShadingLight>& lights, std::size_t light);
 
 /// The class of the shadow rays toward a light, for the intersector.
 RayClass shadow_class(const ShadingLight& light);

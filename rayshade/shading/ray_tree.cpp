@@ -49,6 +49,7 @@ std::uint32_t RayTree::allocate() {
 
 void RayTree::trace(std::span<const EyeSample> samples, std::span<SampleResult> results) {
   counts_.eye_rays += samples.size();
+  samples_ = samples;
   for (std::size_t first = 0; first < samples.size(); first += batch_) {
     start_batch(first, std::min(batch_, samples.size() - first), samples, results);
     while (!pending_.empty()) run_batch(samples, results);
@@ -69,7 +70,7 @@ void RayTree::start_batch(std::size_t first, std::size_t count, std::span<const 
     query.depth = 0;
     query.light = kNone;
   }
-  ask_nearest();
+  ask_nearest([&](std::size_t i) { return first + i; });
   batch_nodes_.clear();
   batch_answers_.clear();
   const bool misses_are_background = scene_.settings->effects.empty() && !observer_;
@@ -123,12 +124,15 @@ void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResu
     query.light = kNone;
     batch_answers_[i] = static_cast<std::uint32_t>(i);
   }
-  ask_nearest();
+  ask_nearest([&](std::size_t i) { return nodes_[batch_nodes_[i]].root; });
   shade_batch(samples, results);
 }
 
-void RayTree::ask_nearest() {
+template <class SampleOf>
+void RayTree::ask_nearest(const SampleOf& sample_of) {
   const std::size_t count = nearest_queries_.size();
+  counts_.nearest_queries += count;
+  const Owners owners(*this, sample_of);
   if (nearest_answers_.size() < count) nearest_answers_.resize(count);
   scene_.intersector->nearest(nearest_queries_, {nearest_answers_.data(), count}, scratch_);
 }

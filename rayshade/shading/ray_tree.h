@@ -101,12 +101,16 @@ class RayTree {
   struct Shade;
   struct PendingLight;
   struct Walk;
+  template <class SampleOf>
+  class Owners;
 
   std::uint32_t allocate();
   void start_batch(std::size_t first, std::size_t count, std::span<const EyeSample> samples,
                    std::span<SampleResult> results);
   void run_batch(std::span<const EyeSample> samples, std::span<SampleResult> results);
-  void ask_nearest();
+  /// `sample_of`: the number of the eye sample that the i-th query is for.
+  template <class SampleOf>
+  void ask_nearest(const SampleOf& sample_of);
   void shade_batch(std::span<const EyeSample> samples, std::span<SampleResult> results);
   void shade_hits(std::span<const EyeSample> samples, std::span<SampleResult> results);
   void emit_lights(std::size_t first_light, std::size_t last_light, std::span<const EyeSample> samples);
@@ -122,6 +126,7 @@ class RayTree {
   ShadingCounts counts_;
   TreeObserver* observer_ = nullptr;
   std::size_t batch_ = 64;
+  std::span<const EyeSample> samples_;  ///< being traced
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> free_;

@@ -69,6 +69,26 @@ struct RayTree::PendingLight {
   bool highlights = false;  ///< there is a highlight
 };
 
+/// Tells for whom the queries of a span are, as long as it lives.
+template <class SampleOf>
+class RayTree::Owners final : public QueryOwners {
+ public:
+  Owners(RayTree& tree, const SampleOf& sample_of) : tree_(tree), sample_of_(sample_of) {
+    tree_.scratch_.owners = this;
+  }
+  ~Owners() override { tree_.scratch_.owners = nullptr; }
+  Owners(const Owners&) = delete;
+  Owners& operator=(const Owners&) = delete;
+  RayOwner owner(std::size_t query) const override {
+    const EyeSample& sample = tree_.samples_[sample_of_(query)];
+    return {sample.x, sample.y, sample.sample};
+  }
+
+ private:
+  RayTree& tree_;
+  const SampleOf& sample_of_;
+};
+
 /// A shadow ray on its way through transparent surfaces (shading.md 5.3).
 struct RayTree::Walk {
   std::uint32_t pending = 0;

@@ -121,7 +121,14 @@ void RayTree::answer_shadows(std::span<SampleResult> results) {
     return;
   }
   const std::span<OcclusionAnswer> answers(shadow_answers_.data(), shadow_queries_.size());
-  scene_.intersector->occluded(shadow_queries_, answers, scratch_);
+  counts_.occlusion_queries += shadow_queries_.size();
+  {
+    const auto sample_of = [&](std::size_t i) {
+      return nodes_[shades_[lights_[shadow_owner_[i]].shade].node].root;
+    };
+    const Owners owners(*this, sample_of);
+    scene_.intersector->occluded(shadow_queries_, answers, scratch_);
+  }
   for (std::size_t i = 0; i < shadow_queries_.size(); ++i) {
     PendingLight& pending = lights_[shadow_owner_[i]];
     SampleResult& result = results[nodes_[shades_[pending.shade].node].root];

@@ -51,7 +51,14 @@ void RayTree::follow_transparent(bool through_all, std::span<SampleResult> resul
       out.depth = 0;
       out.light = query.light;
     }
-    scene_.intersector->nearest({queries.data(), walks_.size()}, answers, scratch_);
+    counts_.nearest_queries += walks_.size();
+    {
+      const auto sample_of = [&](std::size_t i) {
+        return nodes_[shades_[lights_[walks_[i].pending].shade].node].root;
+      };
+      const Owners owners(*this, sample_of);
+      scene_.intersector->nearest({queries.data(), walks_.size()}, answers, scratch_);
+    }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < walks_.size(); ++i) {
       Walk& walk = walks_[i];

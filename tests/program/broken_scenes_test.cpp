@@ -42,10 +42,7 @@ TEST(BrokenScenesTest, EachEndsAsExpected) {
     const fs::path picture = folder.path() / "picture.png";
     // Address space is limited so that eating the machine is a failure here.
     const Outcome done = run(folder.path(), "-q -S 1 -O picture.png " + e.name, {}, 30,
-                             std::string(BINARY_DIR).find("asan") == std::string::npos &&
-                                     std::string(BINARY_DIR).find("tsan") == std::string::npos
-                                 ? "ulimit -v 4000000;"
-                                 : "");
+                             kSanitized ? "" : "ulimit -v 4000000;");
     EXPECT_EQ(done.status, e.status) << done.err;
     EXPECT_TRUE(std::regex_search(done.err, std::regex(e.pattern))) << "expected: " << e.pattern << "\n"
                                                                     << done.err;

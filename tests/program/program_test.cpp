@@ -8,9 +8,11 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <tuple>
 
 #include "rayshade/image/reader.h"
 #include "tests/program/run.h"
+#include "tests/program/xml.h"
 
 namespace rayshade::testing_tools {
 namespace {
@@ -116,6 +118,38 @@ TEST_F(ProgramTest, SameSceneSameBytes) {
   EXPECT_EQ(read_file(path("a.png")), read_file(path("b.png")));
 }
 
+TEST_F(ProgramTest, VerifyingScenesFindsNothingAndChangesNothing) {
+  // Scenes name files beside them.
+  for (const auto& entry : fs::directory_iterator(std::string(SOURCE_DIR) + "/scenes")) {
+    if (entry.is_regular_file()) fs::create_symlink(entry.path(), path(entry.path().filename().string()));
+  }
+  for (const std::string name : {"hero", "fern", "csg", "motion", "focus", "glass", "shadows", "spots"}) {
+    SCOPED_TRACE(name);
+    std::string pictures[2];
+    for (const int verify : {0, 1}) {
+      const Outcome done = go("-q -R 40 30 -S 2 --stats s.json --verify " + std::to_string(verify) +
+                              " -O a.ppm " + name + ".ray");
+      ASSERT_EQ(done.status, 0) << done.err;
+      EXPECT_EQ(done.err, "");
+      pictures[verify] = read_file(path("a.ppm"));
+    }
+    EXPECT_EQ(pictures[0], pictures[1]);
+    const auto stats = nlohmann::json::parse(read_file(path("s.json")));
+    EXPECT_EQ(stats["verification"]["nearest"], stats["rays"]["nearest_queries"]);
+    EXPECT_EQ(stats["verification"]["occlusion"], stats["rays"]["occlusion_queries"]);
+    EXPECT_EQ(stats["verification"]["differing"], 0);
+  }
+}
+
+TEST_F(ProgramTest, SharesThatAreNoneAreRefused) {
+  for (const char* share : {"50", "-1", "101%", "nan", "few", "5%%", "''"}) {
+    const Outcome bad = go("-O a.png --verify " + std::string(share), kSmall);
+    EXPECT_EQ(bad.status, 2) << share;
+    EXPECT_THAT(bad.err, HasSubstr("--verify: ")) << share;
+    EXPECT_THAT(bad.err, HasSubstr("not a share from 0 to 1")) << share;
+  }
+}
+
 TEST_F(ProgramTest, StatisticsAreJson) {
   ASSERT_EQ(go("-q --stats s.json -O a.png", kSmall).status, 0);
   const auto stats = nlohmann::json::parse(read_file(path("s.json")));
@@ -123,6 +157,91 @@ TEST_F(ProgramTest, StatisticsAreJson) {
   EXPECT_EQ(stats["rays"]["eye"], 20 * 16);
   EXPECT_EQ(stats["sampling"]["nan_pixels"], 0);
   EXPECT_EQ(stats["scene_hash"].get<std::string>().size(), 32u);
+}
+
+/// Enough objects for trees.
+std::string many_spheres(const std::string& settings) {
+  std::string text = "screen 40 32 sample 1 nojitter\nlight 1 point 5 -9 9\n" + settings + "\n";
+  for (int i = 0; i < 60; ++i) {
+    text += "sphere diffuse .8 .6 .4 .4 " + std::to_string(i % 10 - 4.5) + " " + std::to_string(i % 3) + " " +
+            std::to_string(i / 10 - 2.5) + "\n";
+  }
+  return text;
+}
+
+TEST_F(ProgramTest, ClassesOfRaysAreInTheReportAndTheStatistics) {
+  const Outcome told = go("-v --stats s.json -O a.png", many_spheres(""));
+  ASSERT_EQ(told.status, 0) << told.err;
+  EXPECT_THAT(told.err, HasSubstr("trees of classes of rays"));
+  EXPECT_THAT(told.err, HasSubstr("light 1 (point)"));
+  EXPECT_THAT(told.err, HasSubstr("Memory of trees:"));
+  const auto stats = nlohmann::json::parse(read_file(path("s.json")));
+  const auto& trees = stats["trees"];
+  EXPECT_EQ(trees["method"], "trees");
+  EXPECT_GT(trees["memory"]["budget_bytes"], 0);
+  std::uint64_t rays = 0, placed = 0;
+  for (const auto& c : trees["classes"]) {
+    rays += c["rays"].get<std::uint64_t>();
+    placed += c["rays_in_tree"].get<std::uint64_t>() + c["left_by_place"].get<std::uint64_t>() +
+              c["left_by_choice"].get<std::uint64_t>();
+  }
+  EXPECT_EQ(rays, placed);
+  EXPECT_EQ(rays, stats["rays"]["nearest_queries"].get<std::uint64_t>() +
+                      stats["rays"]["occlusion_queries"].get<std::uint64_t>());
+  EXPECT_EQ(trees["classes"][0]["class"], "eye");
+  EXPECT_EQ(trees["classes"][0]["rays"], 40 * 32);
+  EXPECT_EQ(trees["classes"][3]["class"], "light 1 (point)");
+  ASSERT_EQ(go("-q --stats s.json -O a.png", kSmall).status, 0);
+  EXPECT_EQ(nlohmann::json::parse(read_file(path("s.json")))["trees"]["method"], "packs");
+}
+
+TEST_F(ProgramTest, TheEyeTreeIsDrawnAsSvg) {
+  // A title that would break the markup, and pictures of every kind beneath.
+  write_file(path("a<b>&\xff.ray"), many_spheres("background .2 .3 .5"));
+  for (const std::string picture : {"a.png", "a.ppm", "a.pfm", "a.rle"}) {
+    const Outcome done =
+        go("-q --fas-dump t.svg --stats s.json --fas-split always -O " + picture + " 'a<b>&\xff.ray'");
+    ASSERT_EQ(done.status, 0) << done.err;
+    const std::string svg = read_file(path("t.svg"));
+    EXPECT_EQ(xml_error(svg), "");
+    EXPECT_THAT(svg, HasSubstr("data:image/png;base64,iVBORw0KGgo"));
+    const auto stats = nlohmann::json::parse(read_file(path("s.json")));
+    const auto& eye = stats["trees"]["classes"][0];
+    const auto cells = eye["leaves"].get<std::int64_t>() - eye["splits"].get<std::int64_t>();
+    std::int64_t drawn = 0, outside = 0;
+    for (std::size_t at = 0; (at = svg.find("<polygon ", at)) != std::string::npos; ++at) ++drawn;
+    EXPECT_EQ(std::sscanf(svg.c_str() + svg.find("<desc>"), "<desc>%*d cells, %ld more", &outside), 1);
+    EXPECT_GT(drawn, 0);
+    EXPECT_EQ(drawn + outside, cells);
+  }
+  ASSERT_EQ(go("-q --fas-dump t.svg -e -O a.rle", many_spheres("")).status, 0);
+  EXPECT_THAT(read_file(path("t.svg")), HasSubstr("cannot be shown"));
+  // Each eye of a stereo pair has a tree, and each frame a drawing.
+  EXPECT_EQ(go("-q --fas-dump t.svg -l -E .2 -O a.png", many_spheres("")).status, 0);
+  ASSERT_EQ(go("-q --fas-dump t.%d.svg -N 2 -O a.%d.png", many_spheres("")).status, 0);
+  EXPECT_EQ(xml_error(read_file(path("t.1.svg"))), "");
+  EXPECT_EQ(go("-q --fas-dump t.svg -N 2 -O a.%d.png", many_spheres("")).status, 2);
+}
+
+TEST_F(ProgramTest, WithoutAnEyeTreeNothingIsDrawn) {
+  const std::string lens = many_spheres("aperture .1 focaldist 8");
+  for (const auto& [options, scene, why] :
+       {std::tuple{"", lens, "aperture"}, std::tuple{"", std::string(kSmall), "few objects"},
+        std::tuple{"--intersector hierarchy", many_spheres(""), "--intersector fas"},
+        std::tuple{"--intersector brute", many_spheres(""), "--intersector fas"}}) {
+    const Outcome refused = go("-q --fas-dump t.svg -O a.png " + std::string(options), scene);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(refused.err, HasSubstr("no tree of eye rays"));
+    EXPECT_THAT(refused.err, HasSubstr(why));
+    EXPECT_FALSE(fs::exists(path("t.svg")) || fs::exists(path("a.png")));
+  }
+}
+
+TEST(XmlErrorTest, FindsWhatIsNotWellFormed) {
+  EXPECT_EQ(xml_error("<?xml version=\"1.0\"?>\n<a b=\"c &amp; d\"><e f=\"1\"/>text</a>\n"), "");
+  for (const char* bad : {"", "<a>", "<a></b>", "<a/><b/>", "<a b=c/>", "<a b=\"<\"/>", "<a>&</a>",
+                          "<a>x</a>y", "<a b=\"1\" b=\"2\"/>", "<a", "<a>\xff</a>", "<a b=\"1\"c=\"2\"/>"})
+    EXPECT_NE(xml_error(bad), "") << bad;
 }
 
 TEST_F(ProgramTest, CheckRendersNothing) {
@@ -156,8 +275,8 @@ TEST_F(ProgramTest, ExplainPrintsTheRayTree) {
 TEST_F(ProgramTest, CostMapAndLayersAreWritten) {
   ASSERT_EQ(go("-q --cost-map cost --layers l.pfm -O a.png", kSmall).status, 0);
   for (const char* name :
-       {"cost.tests.pfm", "cost.tests.png", "cost.microseconds.pfm", "cost.bounds_tests.png", "l.depth.Z.pfm",
-        "l.normal.X.pfm", "l.object.pfm", "l.samples.pfm"}) {
+       {"cost.tests.pfm", "cost.tests.png", "cost.microseconds.pfm", "cost.bounds_tests.png", "cost.rays.pfm",
+        "cost.tree_rays.png", "l.depth.Z.pfm", "l.normal.X.pfm", "l.object.pfm", "l.samples.pfm"}) {
     EXPECT_TRUE(fs::exists(path(name))) << name;
   }
 }
@@ -180,7 +299,7 @@ TEST_F(ProgramTest, AbsurdSizesAreRefusedBeforeMemoryIsTaken) {
   EXPECT_EQ(huge.status, 1);
   EXPECT_THAT(huge.err, HasSubstr("memory"));
   EXPECT_EQ(go("-q --memory 1K -O a.png", kSmall).status, 1);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10 * kTimeFactor));
 }
 
 /// Starts the program on a scene that takes long, in the background.
@@ -198,11 +317,11 @@ class SignalTest : public ProgramTest {
             nullptr);
       _exit(127);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    std::this_thread::sleep_for(std::chrono::milliseconds(700 * kTimeFactor));
     return child;
   }
   int wait_for(pid_t child) {
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 300 * kTimeFactor; ++i) {
       int status = 0;
       if (waitpid(child, &status, WNOHANG) == child)
         return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -228,7 +347,7 @@ TEST_F(SignalTest, TermKeepsThePartialPictureAndExitsWith3) {
 TEST_F(SignalTest, HangUpWritesThePartialPictureAndGoesOn) {
   const pid_t child = start("-q");
   kill(child, SIGHUP);
-  for (int i = 0; i < 100 && !fs::exists(path("slow.partial.png")); ++i) {
+  for (int i = 0; i < 100 * kTimeFactor && !fs::exists(path("slow.partial.png")); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   EXPECT_TRUE(fs::exists(path("slow.partial.png")));

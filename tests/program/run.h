@@ -14,6 +14,16 @@
 
 namespace rayshade::testing_tools {
 
+/// Limits of time are for a build as users have it; one with sanitizers is many times slower, and reserves
+/// address space by the terabyte.
+#ifdef RAYSHADE_SANITIZED
+inline constexpr bool kSanitized = true;
+inline constexpr int kTimeFactor = 10;
+#else
+inline constexpr bool kSanitized = false;
+inline constexpr int kTimeFactor = 1;
+#endif
+
 inline std::string read_file(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream out;
@@ -53,13 +63,13 @@ inline std::string program() {
   return other ? other : std::string(BINARY_DIR) + "/bin/rayshade";
 }
 
-/// Runs `rayshade ARGUMENTS` (words as a shell reads them) in `folder`, killed after `seconds`, with at most
-/// `kilobytes` of address space where given.
+/// Runs `rayshade ARGUMENTS` (words as a shell reads them) in `folder`, killed after `seconds` times
+/// kTimeFactor; `environment` goes before the command.
 inline Outcome run(const std::filesystem::path& folder, const std::string& arguments,
                    const std::string& input = {}, int seconds = 60, const std::string& environment = {}) {
   write_file(folder / ".stdin", input);
   const std::string command = "cd '" + folder.string() + "' && " + environment + " timeout -k 1 " +
-                              std::to_string(seconds) + " '" + program() + "' " + arguments +
+                              std::to_string(seconds * kTimeFactor) + " '" + program() + "' " + arguments +
                               " <.stdin >.stdout 2>.stderr";
   const int status = std::system(command.c_str());
   Outcome out;

@@ -53,7 +53,7 @@ Listing parse(const std::string& text) {
       out.objects.push_back({word, {}, {}});
       if (!applied.empty()) out.objects.back().surface = surfaces.at(applied);
       numbers = &out.objects.back().numbers;
-    } else if (views.contains(word)) {
+    } else if (views.contains(word) || word == "sample" || word == "grid") {
       numbers = &out.view[word];
     } else if (components.contains(word)) {
       numbers = &surfaces[defining][word];
@@ -64,8 +64,6 @@ Listing parse(const std::string& text) {
       surfaces[defining];
     } else if (word == "applysurf") {
       in >> applied;
-    } else if (word == "sample" || word == "grid") {
-      numbers = &out.view[word];
     } else if (surfaces.contains(word)) {
       out.objects.back().surface = surfaces.at(word);
     } else if (word != "point" && word != "end" && word != "nojitter") {
@@ -266,6 +264,18 @@ TEST(Spd, FormatsAgreeInCounts) {
     EXPECT_EQ(count_lines(pov, "cone {") + count_lines(pov, "cylinder {"), kinds["cone"]) << name;
     EXPECT_EQ(std::count(pov.begin(), pov.end(), '{'), std::count(pov.begin(), pov.end(), '}')) << name;
   }
+}
+
+// The picture of the POV-Ray scene is that of the Rayshade scene: one gear of five is a solid with one
+// interior, the ground mirrors what the specular colour leaves, every secondary ray of Rayshade's exists.
+TEST(Spd, PovDescribesTheSameWork) {
+  const std::string pov = generate("gears", 2, "pov");
+  EXPECT_EQ(count_lines(pov, "  interior {"), 2u);
+  EXPECT_EQ(count_lines(pov, "union {"), 2u);
+  const auto start = pov.find("union {"), end = pov.find(" material {", start);
+  EXPECT_EQ(count_lines(pov.substr(start, end - start), "polygon {"), 146u);
+  EXPECT_NE(pov.find("phong 0.3 phong_size 3.0827 reflection 0.18 "), std::string::npos);
+  EXPECT_NE(pov.find("max_trace_level 6 "), std::string::npos);
 }
 
 TEST(Spd, UnknownNamesAreNull) {

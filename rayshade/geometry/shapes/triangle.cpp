@@ -2,6 +2,7 @@
 #include "rayshade/geometry/shapes/triangle.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "rayshade/geometry/roots/quadratic.h"
@@ -34,6 +35,23 @@ double edge_function_exactly(double ax, double ay, double bx, double by) {
   // Powers of two that keep the products away from overflow, and their rounding errors from underflow.
   const int sa = -std::ilogb(a), sb = -std::ilogb(b);
   return product_difference(std::ldexp(ax, sa), std::ldexp(by, sb), std::ldexp(ay, sa), std::ldexp(bx, sb));
+}
+
+double kept_within_box(const Vec3 (&p)[3], const Ray& ray, double t) {
+  double entry = -std::numeric_limits<double>::infinity(), exit = -entry;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double o = ray.origin[axis], d = ray.direction[axis];
+    if (d == 0) continue;
+    const double lo = std::min(std::min(p[0][axis], p[1][axis]), p[2][axis]),
+                 hi = std::max(std::max(p[0][axis], p[1][axis]), p[2][axis]);
+    // A few units of rounding more, so that the last bits stay those of the plane.
+    const double margin = 8 * std::numeric_limits<double>::epsilon() *
+                          std::max(std::fabs(o), std::max(std::fabs(lo), std::fabs(hi))) / std::fabs(d);
+    const double a = (lo - o) / d, b = (hi - o) / d;
+    entry = std::max(entry, std::min(a, b) - margin);
+    exit = std::min(exit, std::max(a, b) + margin);
+  }
+  return t > exit ? exit : t < entry ? entry : t;
 }
 
 Vec3 Triangle::geometric_normal() const {

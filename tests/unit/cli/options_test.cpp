@@ -103,6 +103,14 @@ TEST(ParseBytesTest, TakesSuffixes) {
   EXPECT_EQ(parse_bytes("1.5G", "--memory"), std::uint64_t{3} << 29);
 }
 
+TEST(ParseShareTest, TakesFractionsAndPercentages) {
+  EXPECT_EQ(parse({}).verify, 0);
+  EXPECT_EQ(parse({"--verify", ".25"}).verify, .25);
+  EXPECT_EQ(parse({"--verify=5%"}).verify, .05);
+  EXPECT_EQ(parse({"--verify", "100%"}).verify, 1);
+  EXPECT_THROW(parse({"--verify", "2"}), UsageError);
+}
+
 TEST(JsonTest, IsReadBackByAnotherReader) {
   JsonWriter j;
   j.begin_object()

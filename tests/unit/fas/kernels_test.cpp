@@ -2,15 +2,13 @@
 // The vector code of every instruction set that this processor has is the scalar code, bit by bit.
 #include "fas/kernels.h"
 
-#include <gtest/gtest.h>
-#include <hwy/highway.h>
-#include <hwy/targets.h>
-
 #include <array>
 #include <bit>
 #include <cstring>
 #include <random>
 #include <vector>
+
+#include "tests/unit/fas/targets.h"
 
 namespace fas {
 namespace {
@@ -65,17 +63,12 @@ class RandomBlock {
   std::vector<std::uint8_t> bytes_;
 };
 
-class KernelsTest : public testing::TestWithParam<std::int64_t> {
+class KernelsTest : public test::TargetTest {
  protected:
   void SetUp() override {
-    hwy::SetSupportedTargetsForTest(GetParam());
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    test::TargetTest::SetUp();
     kernels_ = dispatched_kernels();
     ASSERT_STREQ(kernels_.name, hwy::TargetName(GetParam()));
-  }
-  void TearDown() override {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   }
   Kernels kernels_{};
 };
@@ -143,18 +136,7 @@ TEST_P(KernelsTest, PlacesBeyondTheEndDoNotMatter) {
   }
 }
 
-std::string target_name(const testing::TestParamInfo<std::int64_t>& info) {
-  return hwy::TargetName(info.param);
-}
-
-std::vector<std::int64_t> targets() {
-  std::vector<std::int64_t> out;
-  for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1)
-    out.push_back(left & -left);
-  return out;
-}
-
-INSTANTIATE_TEST_SUITE_P(Targets, KernelsTest, testing::ValuesIn(targets()), target_name);
+INSTANTIATE_TEST_SUITE_P(Targets, KernelsTest, testing::ValuesIn(test::targets()), test::target_name);
 
 TEST(Kernels, AreThoseOfThisProcessor) {
   EXPECT_STRNE(kernels().name, "");

@@ -1,2 +1,2 @@
-#SPDX - License - Identifier : MIT
-target_link_libraries(fas_test PRIVATE PkgConfig::HWY Threads::Threads)
+# SPDX-License-Identifier: MIT
+target_link_libraries(fas_test PRIVATE rayshade_flags PkgConfig::HWY Threads::Threads)

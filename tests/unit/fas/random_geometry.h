@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "fas/geometry.h"
+#include "fas/fas.h"
 
 namespace fas::test {
 

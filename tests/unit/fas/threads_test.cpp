@@ -274,7 +274,7 @@ TEST(Threads, MayRunOutOfMemory) {
     exhausted += shared.exhausted();
   }
   EXPECT_GT(in_trees, 10'000u);
-  EXPECT_GE(exhausted, 8);
+  EXPECT_GE(exhausted, 4);  // how many depends on when leaves are split, and so on the clock
 }
 
 /// One thread gets what many get, and what it got before.

@@ -107,7 +107,7 @@ bool random_shot(Dice& dice, const test::Scene& scene, const View& view, bool fr
     out.direction[i] = -axis[i];
     if (view.kind == View::Kind::kPoint) out.origin[i] += 0.4 * view.aim * aside[i] * (dice.below(2) ? 1 : 0);
   }
-  return aims_at(view, out.origin, out.direction);
+  return aims_at(view, out.origin, out.direction, 0);
 }
 
 struct Totals {
@@ -307,7 +307,7 @@ TEST(HyperTree, CoversHideOnlyWhatIsBehind) {
         o[k] = shot.origin[k] + along * shot.direction[k];
         d[k] = view.apex[k] - o[k];
       }
-      if (!aims_at(view, o, d)) continue;
+      if (!aims_at(view, o, d, 1)) continue;
       const auto stops = [&](std::uint32_t id) {
         const double at = test::triangle_hit(scene[id], o, d);
         return at > 1e-9 && at < 1;
@@ -355,11 +355,12 @@ TEST(HyperTree, AbsurdRaysGoElsewhere) {
                 tree, state, at_apex, [](std::uint32_t) { return true; }, occluded),
             Place::kElsewhere);
   const double ahead[3] = {1, 0, 0}, off[3] = {0, 1, 0}, far[3] = {1e9, 0, 0}, toward[3] = {-1, 0, 0};
-  EXPECT_TRUE(aims_at(view, ahead, toward));
-  EXPECT_FALSE(aims_at(view, off, toward));
-  EXPECT_FALSE(aims_at(view, far, toward)) << "beyond the reach";
+  EXPECT_TRUE(aims_at(view, ahead, toward, 1));
+  EXPECT_FALSE(aims_at(view, ahead, toward, 1.001)) << "goes on behind the apex";
+  EXPECT_FALSE(aims_at(view, off, toward, 1));
+  EXPECT_FALSE(aims_at(view, far, toward, 1)) << "beyond the reach";
   const double not_a_number[3] = {nan, 0, 0};
-  EXPECT_FALSE(aims_at(view, not_a_number, toward));
+  EXPECT_FALSE(aims_at(view, not_a_number, toward, 1));
 }
 
 /// An empty structure is in nobody's way.

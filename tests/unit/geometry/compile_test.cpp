@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "rayshade/geometry/hierarchy.h"
 #include "rayshade/geometry/resolve.h"
 #include "tests/unit/geometry/scene_builder.h"
 
@@ -431,7 +430,7 @@ TEST(Compile, FramesMove) {
   SceneBuilder still;
   for (int i = 0; i < 20; ++i) still.show(still.sphere(0.5, {0, 30.0 + i, 0}));
   const auto rest = still.compile(options);
-  const Hierarchy* before = rest->groups[0].hierarchy.get();
+  const fas::Hierarchy* before = rest->groups[0].hierarchy.get();
   rest->prepare_frame({3, 3.5}, 1, true);
   EXPECT_EQ(rest->groups[0].hierarchy.get(), before);
 }

@@ -37,8 +37,8 @@ std::string difference(const NearestAnswer& a, const NearestAnswer& b) {
 }
 
 struct Totals {
-  std::uint64_t rays = 0, hits = 0, shadow_rays = 0, occluded = 0, in_trees = 0, elsewhere = 0, splits = 0;
-  std::uint64_t walk_hits = 0, nothing_else = 0;
+  std::uint64_t rays = 0, hits = 0, shadow_rays = 0, occluded = 0, in_trees = 0, elsewhere = 0, splits = 0,
+                in_beams = 0, beam_splits = 0, walk_hits = 0, nothing_else = 0;
 };
 
 /// One scene with its eye, its lights, and the intersectors that must agree.
@@ -57,16 +57,20 @@ class Trial {
     CompileOptions compile;
     compile.shutter = {0, 1};
     scene_ = random_.b.compile(compile);
-    options_.eye = {RayClass::Kind::kPoint, outward_.point(viewpoint())};
+    options_.eye =
+        seed % 4 == 1 ? spread() : RayClass{RayClass::Kind::kPoint, outward_.point(viewpoint()), {}};
     for (int i = 0; i < 3; ++i)
-      options_.lights.push_back({RayClass::Kind::kPoint, outward_.point(viewpoint())});
-    options_.lights.push_back({RayClass::Kind::kParallel, direction()});
-    options_.lights.push_back({RayClass::Kind::kParallel, direction()});
+      options_.lights.push_back({RayClass::Kind::kPoint, outward_.point(viewpoint()), {}});
+    options_.lights.push_back({RayClass::Kind::kParallel, direction(), {}});
+    options_.lights.push_back({RayClass::Kind::kParallel, direction(), {}});
+    options_.lights.push_back(spread());
     options_.lights.push_back({});
     options_.memory = std::size_t{64} << 20;
     oracle_ = make_brute_force(*scene_);
     others_.push_back({make_hierarchy(*scene_), "hierarchy"});
     others_.push_back({make_fas(*scene_, options_), "fas"});
+    options_.choose = false;
+    others_.push_back({make_fas(*scene_, options_), "fas, trees whatever they cost"});
     FasOptions small = options_, always = options_;
     const std::size_t budgets[] = {0, std::size_t{256} << 10, std::size_t{1} << 20};
     small.memory = budgets[seed % 3];
@@ -90,6 +94,10 @@ class Trial {
         totals_.in_trees += cache.counts.rays;
         totals_.elsewhere += cache.counts.elsewhere;
         totals_.splits += cache.counts.splits;
+      }
+      for (const fas::BeamCache& cache : other.scratch.trees->beam_caches) {
+        totals_.in_beams += cache.counts.rays;
+        totals_.beam_splits += cache.counts.splits;
       }
     }
     return true;
@@ -128,21 +136,56 @@ class Trial {
     return d;
   }
 
+  /// From a lens, or toward an area: of any size, some of them flat.
+  RayClass spread() {
+    Vec3 size = random_.any_size(1e-3, 10) * abs(random_.dice.direction());
+    if (random_.dice.below(2)) size[random_.dice.below(3)] = 0;
+    const Vec3 lo = viewpoint();
+    RayClass out;
+    out.bounds.add(outward_.point(lo));
+    out.bounds.add(outward_.point(lo + size));
+    return out;
+  }
+  Vec3 within(const Bounds3& box) {
+    Vec3 p;
+    for (int i = 0; i < 3; ++i) p[i] = random_.dice.uniform(box.lo[i], box.hi[i]);
+    return p;
+  }
+
   Vec3 target() { return outward_.point(random_.target(kHalf)); }
+
+  Vec3 toward(const RayClass& light, const Vec3& from) {
+    if (light.kind == RayClass::Kind::kParallel) return light.point;
+    if (light.kind == RayClass::Kind::kPoint) return light.point - from;
+    return (light.bounds.empty() ? target() : within(light.bounds)) - from;
+  }
 
   bool nearest_agrees(std::size_t count) {
     auto& dice = random_.dice;
     std::vector<NearestQuery> queries(count);
     for (NearestQuery& query : queries) {
       query.ray.time = dice.uniform();
-      const bool eye = dice.below(8) != 0;
-      query.kind = eye ? RayKind::kEye : RayKind::kReflected;
-      query.ray.origin = eye ? options_.eye.point : target();
-      const Vec3 d = target() - query.ray.origin;
+      constexpr RayKind kKinds[] = {RayKind::kReflected, RayKind::kTransmitted, RayKind::kShadow};
+      query.kind = dice.below(3) != 0 ? RayKind::kEye : kKinds[dice.below(3)];
+      query.ray.origin = target();
+      if (query.kind == RayKind::kEye)
+        query.ray.origin = options_.eye.bounds.empty() ? options_.eye.point : within(options_.eye.bounds);
+      Vec3 d = target() - query.ray.origin;
+      if (query.kind == RayKind::kShadow) {  // behind glass
+        query.light = static_cast<std::uint32_t>(dice.below(static_cast<int>(options_.lights.size()) + 1));
+        if (query.light < options_.lights.size()) d = toward(options_.lights[query.light], query.ray.origin);
+        if (dice.below(8) != 0) query.hi = length(d);
+      }
       query.ray.direction = max_abs(d) > 0 ? normalize(d) : dice.direction();
-      if (dice.below(20) == 0) query.ray.direction = direction();
+      const bool parallel = query.light < options_.lights.size() &&
+                            options_.lights[query.light].kind == RayClass::Kind::kParallel;
+      if (parallel) {
+        query.ray.direction = d;
+        query.hi = kFar;
+      }
+      if (!parallel && dice.below(20) == 0) query.ray.direction = direction();
       query.lo = dice.below(2) ? kEpsilon : dice.uniform(0, 1e-3) * max_abs(d);
-      if (dice.below(4) == 0) query.hi = dice.uniform(0, 2) * max_abs(d);
+      if (query.kind != RayKind::kShadow && dice.below(4) == 0) query.hi = dice.uniform(0, 2) * max_abs(d);
       if (dice.below(10) == 0) query.mask = dice.below(2) ? kOpaque : kTransparent;
     }
     std::vector<NearestAnswer> truth(count);
@@ -191,14 +234,13 @@ class Trial {
                              ? target()
                              : found_[static_cast<std::size_t>(dice.below(static_cast<int>(found_.size())))];
       const RayClass light = query.light < options_.lights.size() ? options_.lights[query.light] : RayClass{};
+      const Vec3 d = toward(light, query.ray.origin);
       if (light.kind == RayClass::Kind::kParallel) {
-        query.ray.direction = light.point;
+        query.ray.direction = d;
       } else {
-        const Vec3 at = light.kind == RayClass::Kind::kPoint ? light.point : target();
-        const Vec3 toward = at - query.ray.origin;
-        query.hi = length(toward);
+        query.hi = length(d);
         if (!(query.hi > 0)) query.hi = 1;
-        query.ray.direction = toward / query.hi;
+        query.ray.direction = d / query.hi;
         // As a start that was moved off its surface makes it: not quite toward the light.
         if (dice.below(3) == 0)
           query.ray.origin = query.ray.origin + 1e-15 * max_abs(query.ray.origin) * direction();
@@ -299,6 +341,8 @@ TEST(Identity, IntersectorsGiveTheSameBits) {
   EXPECT_GT(totals.in_trees, totals.rays);
   EXPECT_GT(totals.elsewhere, 0u);
   EXPECT_GT(totals.splits, 0u);
+  EXPECT_GT(totals.in_beams, totals.rays / 4);
+  EXPECT_GT(totals.beam_splits, 1000u);
   EXPECT_GT(totals.walk_hits, totals.shadow_rays / 16);
   EXPECT_GT(totals.nothing_else, totals.shadow_rays / 16);
 }

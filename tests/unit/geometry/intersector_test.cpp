@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "rayshade/geometry/hierarchy.h"
 #include "rayshade/geometry/resolve.h"
 #include "tests/unit/geometry/random_scene.h"
 
@@ -172,87 +171,6 @@ TEST(Intersector, ExactNearestIsAFunctionOfTheRay) {
     hits += best.found;
   }
   EXPECT_GT(hits, 300);
-}
-
-TEST(Hierarchy, VectorBoxTestIsTheScalarOne) {
-  Dice dice(21);
-  int met_count = 0;
-  for (int i = 0; i < 100'000; ++i) {
-    Hierarchy::Node node{};
-    for (int lane = 0; lane < 4; ++lane) {
-      const Vec3 lo = dice.in_box(2);
-      for (int axis = 0; axis < 3; ++axis) {
-        const bool none = dice.below(20) == 0;
-        node.planes[0][axis][lane] =
-            none ? std::numeric_limits<float>::infinity() : static_cast<float>(lo[axis]);
-        node.planes[1][axis][lane] =
-            none ? -std::numeric_limits<float>::infinity()
-                 : static_cast<float>(lo[axis] + (dice.below(4) ? dice.uniform() : 0));
-      }
-    }
-    Ray ray{dice.in_box(4), {}};
-    const int aim = dice.below(4);
-    for (int axis = 0; axis < 3; ++axis) {
-      ray.direction[axis] = node.planes[0][axis][aim] + dice.uniform() - ray.origin[axis];
-    }
-    if (!is_finite(ray.direction)) ray.direction = dice.direction();
-    if (dice.below(4) == 0) ray.direction[dice.below(3)] = dice.below(2) ? 0.0 : -0.0;
-    if (dice.below(4) == 0) ray.origin[dice.below(3)] = node.planes[0][0][0];
-    BoxProbe probe;
-    if (!make_probe({{-3, -3, -3}, {3, 3, 3}}, 1, ray, 0, kFar, probe)) continue;
-    const float limit = probe.limit(dice.below(2) ? kFar : dice.uniform(0, 5));
-    float near[4], near_scalar[4];
-    const unsigned met = boxes_met(node, probe, limit, near);
-    ASSERT_EQ(met, boxes_met_scalar(node, probe, limit, near_scalar));
-    for (int lane = 0; lane < 4; ++lane) {
-      if (met >> lane & 1) {
-        ASSERT_EQ(near[lane], near_scalar[lane]);
-        ++met_count;
-      }
-    }
-  }
-  EXPECT_GT(met_count, 5'000);
-}
-
-/// No box that the ray meets in exact arithmetic is refused, whatever the directions' zeros and signs.
-TEST(Hierarchy, BoxTestIsConservative) {
-  Dice dice(22);
-  for (int i = 0; i < 50'000; ++i) {
-    const Bounds3 all{{-3, -3, -3}, {3, 3, 3}};
-    // Often tiny and at the border of the group's box, where the ray has just entered: there the float
-    // distance is small, but the coordinates that it comes from are not.
-    Vec3 lo = dice.in_box(2);
-    const double size = dice.below(2) ? 1 : 1e-4;
-    if (dice.below(2)) lo[dice.below(3)] = dice.below(2) ? -3 : 3 - size;
-    const Bounds3 box{lo,
-                      lo + size * Vec3{dice.uniform(), dice.below(3) ? dice.uniform() : 0, dice.uniform()}};
-    // A point of the box, often on a face or an edge, and a ray through it.
-    Vec3 target;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double share = dice.below(2) ? dice.uniform() : dice.below(2);
-      target[axis] = share == 1 ? box.hi[axis] : box.lo[axis] + share * (box.hi[axis] - box.lo[axis]);
-    }
-    Vec3 direction = dice.direction();
-    if (dice.below(3) == 0) direction[dice.below(3)] = dice.below(2) ? 0.0 : 1e-200;
-    if (dice.below(3) == 0) direction = direction * dice.uniform(1e-5, 1e5);
-    const double t = std::ldexp(1, dice.below(12)) / length(direction);
-    const Ray ray{target - t * direction, direction};
-    Hierarchy::Node node{};
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int lane = 0; lane < 4; ++lane) {
-        node.planes[0][axis][lane] =
-            std::nextafter(static_cast<float>(box.lo[axis]), -std::numeric_limits<float>::infinity());
-        node.planes[1][axis][lane] =
-            std::nextafter(static_cast<float>(box.hi[axis]), std::numeric_limits<float>::infinity());
-      }
-    }
-    BoxProbe probe;
-    ASSERT_TRUE(make_probe(all, 1, ray, 0, kFar, probe)) << i;
-    ASSERT_TRUE(probe.usable);
-    float near[4];
-    ASSERT_EQ(boxes_met(node, probe, probe.limit(t), near), 15u) << i;
-    ASSERT_TRUE(clip_to_box(box, 1, ray, 0, t)) << i;
-  }
 }
 
 /// Leaves all in one place cannot be told apart: the depth must stay bounded all the same.

@@ -342,6 +342,49 @@ TEST(ShapesTriangle, TangentsFollowTheGivenSurfaceCoordinates) {
   EXPECT_EQ(UvTriangle(flat).texture_coordinates({}, {}, {}).dv, (Vec3{0, 0, 0})) << "u does not vary";
 }
 
+/// Bounds cull by where the triangle is, so no hit may be said to be elsewhere: not of slivers, whose normal
+/// is mostly rounding, and not edge-on, where the plane is met anywhere.
+TEST(ShapesTriangle, HitsAreWithinTheBoxHoweverThinOrEdgeOn) {
+  std::mt19937_64 engine(30070);
+  const auto uniform = [&](double lo, double hi) {
+    return lo + (hi - lo) * (static_cast<double>(engine() >> 11) * 0x1p-53);
+  };
+  int hits = 0, far_off = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    shape::Triangle corners;
+    const double share = uniform(-1, 1), width = std::pow(10, uniform(-13, 2));
+    for (int axis = 0; axis < 3; ++axis) {
+      corners.p[0][axis] = uniform(-1000, 1000);
+      corners.p[1][axis] = corners.p[0][axis] + uniform(-300, 300);
+      corners.p[2][axis] =
+          corners.p[0][axis] + share * (corners.p[1][axis] - corners.p[0][axis]) + uniform(-1, 1) * width;
+    }
+    const Triangle triangle(corners);
+    // Through a point of it, often a corner, along something near an edge or an axis.
+    const double u = engine() % 3 == 0 ? uniform(0, 1) : 0, v = engine() % 3 == 0 ? uniform(0, 1 - u) : 0;
+    const Vec3 e1 = corners.p[1] - corners.p[0], e2 = corners.p[2] - corners.p[0];
+    const Vec3 target = corners.p[0] + (u * e1 + v * e2);
+    Vec3 d = e1 + std::pow(10, uniform(-6, 1)) * Vec3{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    if (engine() % 3 == 0) {
+      d = {};
+      d[static_cast<int>(engine() % 3)] = 1;
+    }
+    d = normalize(d);
+    const Ray ray{target - uniform(0, 2000) * d, d};
+    const double t = hit_at(triangle, ray, -kFar);
+    if (std::isnan(t)) continue;
+    ++hits;
+    const Vec3 at = ray.at(t);
+    const Bounds3 box = grown(triangle.bounds(), 1e-12 * 4000);
+    ASSERT_TRUE(box.contains(at)) << i << ": " << t;
+    // What the plane alone says.
+    const Vec3 n = cross(corners.p[1] - corners.p[0], corners.p[2] - corners.p[1]);
+    far_off += !grown(box, 1e-6).contains(ray.at(dot(n, corners.p[0] - ray.origin) / dot(n, d)));
+  }
+  EXPECT_GT(hits, 10'000);
+  EXPECT_GT(far_off, 50) << "no case was hard";
+}
+
 TEST(ShapesPolygon, NonZeroWinding) {
   const auto inside = [](const Polygon& polygon, double x, double y) {
     return hits(polygon, {{x, y, 1}, {0, 0, -1}});
