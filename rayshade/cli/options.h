@@ -44,8 +44,10 @@ struct Options {
   bool alpha = true;  ///< -a toggles
   bool exponential = false;
   bool sample_map = false;
-  bool resume = false;       ///< -c
-  bool shadow_cache = true;  ///< -s; accepted, changes nothing
+  bool resume = false;  ///< -c
+  bool no_journal = false, partial = false;
+  double partial_interval = 30;  ///< seconds
+  bool shadow_cache = true;      ///< -s; accepted, changes nothing
   Preprocess preprocess = Preprocess::kAuto;
   std::optional<std::string> preprocessor_arguments;
   bool quiet = false, verbose = false;

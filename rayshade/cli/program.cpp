@@ -14,6 +14,7 @@
 #include <memory>
 #include <new>
 
+#include "rayshade/cli/kept_work.h"
 #include "rayshade/cli/options.h"
 #include "rayshade/cli/pictures.h"
 #include "rayshade/cli/progress.h"
@@ -21,7 +22,9 @@
 #include "rayshade/cli/signals.h"
 #include "rayshade/cli/tree_svg.h"
 #include "rayshade/lang/parse.h"
+#include "rayshade/render/picture_identity.h"
 #include "rayshade/render/renderer.h"
+#include "rayshade/scene/hashing_provider.h"
 #include "rayshade/scene/provider.h"
 
 namespace rayshade {
@@ -182,13 +185,12 @@ class Run {
     if (name == "-" && isatty(STDOUT_FILENO)) {
       throw UsageError("standard output is a terminal: name a file with -O, or redirect");
     }
-    if (options_.resume) {
-      if (name == "-") throw RenderError("-c needs the name of the picture: -O, or outfile in the scene", {});
-      complain(engine_, "warning: this version keeps no journal to continue from; rendering from the start");
-    }
+    if (options_.resume && options_.no_journal)
+      throw UsageError("-c continues from a journal: not with --no-journal");
     const FrameBufferOptions buffer = output.frame_buffer_options(
         check_memory(output.frame_buffer_options(options_.memory_limit.value_or(available_memory()))));
-    Renderer renderer(scene_, settings_, engine_.provider(), render_options());
+    HashingProvider files(engine_.provider());
+    Renderer renderer(scene_, settings_, files, render_options());
     if (options_.fas_dump && !renderer.eye_tree()) throw UsageError("--fas-dump: " + why_no_eye_tree());
     run_.program = engine_.program();
     run_.scene = scene_name();
@@ -206,6 +208,17 @@ class Run {
 
     FrameBuffer picture(buffer);
     const PictureFormat format = format_of(picture);
+    const auto say = [this](const std::string& text) { complain(engine_, text); };
+    KeptWork kept(options_, output, say, [&](const std::string& text) {
+      if (!options_.quiet) say(text);
+    });
+    kept.open(
+        name,
+        [&] {
+          return picture_identity(scene_, run_.scene_hash, settings_, format, options_.sample_map,
+                                  files.hashes(), RAYSHADE_VERSION);
+        },
+        picture);
     engine_.begin({options_, settings_, renderer, format, run_.scene_hash});
     Progress progress(report_.get(), {!chatty(), report_.get() == stderr && isatty(STDERR_FILENO) != 0,
                                       options_.report_frequency.value_or(0), settings_.min_y});
@@ -213,27 +226,41 @@ class Run {
     bool complete = true;
     for (int i = 0; i < settings_.frames && complete; ++i) {
       const int frame = settings_.first_frame + i;
-      if (i > 0) picture.clear();
+      if (kept.finished_before(frame)) continue;
+      picture.clear();
+      kept.load(frame, picture);
       progress.start(settings_.frames > 1 ? fmt::format("frame {} ({} of {})", frame, i + 1, settings_.frames)
                                           : "rendering");
-      complete =
-          engine_.render_frame(renderer, {frame, picture, requests.stop(), [&](const FrameProgress& now) {
-                                            progress.update(now);
-                                            if (requests.take_progress()) progress.print_now(now);
-                                            if (requests.take_save()) output.write_partial(picture, frame);
-                                          }});
+      complete = engine_.render_frame(renderer, {frame, picture, requests.stop(),
+                                                 [&](const FrameProgress& now) {
+                                                   progress.update(now);
+                                                   if (requests.take_progress()) progress.print_now(now);
+                                                   kept.tend(frame, picture);
+                                                   if (requests.take_save()) {
+                                                     kept.save();
+                                                     output.write_partial(picture, frame);
+                                                   }
+                                                 },
+                                                 kept.keeper(frame, picture)});
       progress.finish();
       if (complete) {
         output.write_frame(picture, frame);
+        kept.finish_frame(frame);
         if (options_.fas_dump)
           write_text(output.file_name(*options_.fas_dump, frame), tree_drawing(renderer, picture, frame));
       } else {
+        kept.save();
         const std::string partial = output.write_partial(picture, frame);
-        complain(engine_, partial.empty() ? "stopped; no partial picture is kept on standard output"
-                                          : fmt::format("stopped; the partial picture is {}", partial));
+        complain(engine_, partial.empty()
+                              ? "stopped; no partial picture is kept on standard output"
+                              : fmt::format("stopped; the partial picture is {}{}", partial, kept.advice()));
       }
     }
     if (complete || renderer.statistics().frames > 0) output.finish();
+    if (complete) kept.finish();
+    run_.blocks_resumed = kept.blocks_resumed();
+    run_.pixels_resumed = kept.pixels_resumed();
+    run_.frames_resumed = kept.frames_resumed();
     RenderStatistics statistics = renderer.statistics();
     engine_.end(statistics);
     const bool differs = statistics.verify.differing > 0;

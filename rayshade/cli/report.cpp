@@ -158,6 +158,9 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
   j.value("samples", r.samples).value("jitter", r.jitter).value("max_depth", r.max_depth);
   j.value("seed", r.seed).value("first_frame", r.first_frame).value("frames", r.frames);
   j.end_object();
+  j.begin_object("resumed");
+  j.value("blocks", run.blocks_resumed).value("pixels", run.pixels_resumed);
+  j.value("frames", run.frames_resumed).end_object();
   j.begin_object("rays");
   j.value("eye", c.eye_rays).value("shadow", c.shadow_rays).value("reflected", c.reflected_rays);
   j.value("transmitted", c.transmitted_rays)

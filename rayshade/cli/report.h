@@ -20,6 +20,9 @@ struct RunSummary {
   std::string scene_hash;
   std::string version;
   std::string outcome;  ///< "complete", "stopped", or "differs": --verify found something
+  /// What earlier runs had done, and this one did not render again.
+  std::uint64_t blocks_resumed = 0, pixels_resumed = 0;
+  int frames_resumed = 0;
   double parse_seconds = 0;
   double total_cpu_seconds = 0;  ///< user and system, of the process
   double wall_seconds = 0;

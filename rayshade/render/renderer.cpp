@@ -158,15 +158,18 @@ bool Renderer::render_frame(const FrameJob& job) {
       ended = crew->wait(0.1);
       if (job.progress) job.progress(feed.progress());
     }
-    statistics_.render_seconds += seconds_since(start);
     finish_frame(*crew);
   }
+  count_frame(picture, before, seconds_since(start));
+  return picture.complete();
+}
+
+void Renderer::count_frame(const FrameBuffer& picture, const PixelStatistics& before, double seconds) {
+  statistics_.render_seconds += seconds;
   const PixelStatistics seen = picture.statistics();
   statistics_.nan_pixels += seen.not_a_number - before.not_a_number;
   statistics_.negative_pixels += seen.negative - before.negative;
-  if (!picture.complete()) return false;
-  ++statistics_.frames;
-  return true;
+  statistics_.frames += picture.complete();
 }
 
 std::string Renderer::explain(int frame, int x, int y) {
