@@ -8,7 +8,7 @@ SUDO    := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 
 # What the program is built from, and what only the tests and the extras need.
 PACKAGES       := g++ cmake ninja-build flex bison pkg-config libpng-dev zlib1g-dev libfmt-dev libsleef-dev \
-                  librandom123-dev libopenexr-dev libhwy-dev
+                  librandom123-dev libopenexr-dev libhwy-dev libopenmpi-dev openmpi-bin
 TEST_PACKAGES  := libgtest-dev libgmock-dev nlohmann-json3-dev libboost-dev man-db groff-base
 BENCH_PACKAGES := libbenchmark-dev libembree-dev povray
 LINT_PACKAGES  := clang clang-tidy clang-format libclang-rt-14-dev
@@ -16,7 +16,7 @@ LINT_PACKAGES  := clang clang-tidy clang-format libclang-rt-14-dev
 BENCH_CMAKE := cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DRAYSHADE_BENCH=ON
 
 .DEFAULT_GOAL := help
-.PHONY: help run build check check-long asan tsan bench bench-fas bench-scenes install package lint format fuzz clean \
+.PHONY: help run build check check-long asan tsan bench bench-fas bench-scenes bench-paper check-clusters install package lint format fuzz clean \
         packages test-packages bench-packages lint-packages
 
 help: ## list the targets
@@ -51,20 +51,26 @@ run: build ## build, render a scene to a PNG and say where it is
 check: test-packages ## build everything and run all tests
 	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=ON -DCMAKE_INSTALL_PREFIX=$(PREFIX)
 	cmake --build $(BUILD) -j $(JOBS)
-	ctest --test-dir $(BUILD) -j $(JOBS) -LE long --output-on-failure
+	ctest --test-dir $(BUILD) -j $(JOBS) -LE 'long|slurm|mpich' --output-on-failure
 
 check-long: test-packages ## the tests that take longer, too
 	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=ON
 	cmake --build $(BUILD) -j $(JOBS)
-	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
+	ctest --test-dir $(BUILD) -j $(JOBS) -LE 'slurm|mpich' --output-on-failure
+
+check-clusters: test-packages ## pafas under MPICH and in a Slurm of one node
+	$(call need,mpich libmpich-dev slurm-wlm munge)
+	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=ON
+	cmake --build $(BUILD) -j $(JOBS)
+	$(SUDO) ctest --test-dir $(BUILD) -L 'slurm|mpich' --output-on-failure
 
 asan: test-packages ## the tests under the address and undefined-behaviour sanitizers
 	cmake --preset asan && cmake --build --preset asan -j $(JOBS)
-	ctest --test-dir build-asan -j $(JOBS) -LE 'long|timing' --output-on-failure
+	ctest --test-dir build-asan -j $(JOBS) -LE 'long|timing|slurm|mpich' --output-on-failure
 
 tsan: test-packages ## the tests under the thread sanitizer
 	cmake --preset tsan && cmake --build --preset tsan -j $(JOBS)
-	ctest --test-dir build-tsan -j $(JOBS) -LE 'long|timing' --output-on-failure
+	ctest --test-dir build-tsan -j $(JOBS) -LE 'long|timing|slurm|mpich' --output-on-failure
 
 # WRITE=--write also puts the tables of bench-fas and bench-scenes into docs/performance.md.
 bench: bench-packages ## run the benchmarks (speed as ratios within one run)
@@ -81,6 +87,12 @@ bench-scenes: bench-packages ## time the procedural databases as whole programs:
 	$(BENCH_CMAKE)
 	cmake --build $(BUILD) -j $(JOBS) --target rayshade spd compare_pictures
 	bench/run-scenes $(BUILD) $(WRITE)
+
+bench-paper: bench-packages ## the tables of the paper: speed-up, memory, samples, on up to 16 ranks
+	$(call need,python3)
+	$(BENCH_CMAKE)
+	cmake --build $(BUILD) -j $(JOBS) --target rayshade pafas spd
+	bench/run-paper $(BUILD) $(WRITE)
 
 install: build ## install programs, scenes, manuals and completion under PREFIX
 	$(SUDO) cmake --install $(BUILD) --prefix $(PREFIX)

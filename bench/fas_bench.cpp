@@ -297,7 +297,7 @@ Times measure(const std::string& path, const Arguments& arguments) {
   buffer.height = settings.window_height();
   FrameBuffer picture(buffer);
   const std::atomic<bool> stop{false};
-  renderer.render_frame(0, picture, stop, {});
+  renderer.render_frame({0, picture, stop});
   replay_batch(recording);
 
   Times out = contest->times();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <vector>
-
 #include "rayshade/cli/program.h"
 
-int main(int argc, char** argv) { return rayshade::run_program({argv + 1, argv + argc}); }
+int main(int argc, char** argv) {
+  rayshade::LocalEngine engine;
+  return rayshade::run_program({argv + 1, argv + argc}, engine);
+}

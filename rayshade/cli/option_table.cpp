@@ -353,9 +353,35 @@ std::vector<OptionSpec> make_table() {
                "continue",
                {},
                kRun,
-               "Continue an interrupted rendering. This version keeps no journal: it says so and renders "
-               "from the start.",
+               "Continue an interrupted rendering from its journal. An error where the journal is of another "
+               "scene or of other options; without -c such a journal is replaced, and one that matches is "
+               "continued all the same.",
                [](Options& o, Values) { o.resume = true; }});
+  t.push_back({0,
+               "no-journal",
+               {},
+               kRun,
+               "Neither keep a journal of finished blocks (FILE.journal beside the picture) nor use one.",
+               [](Options& o, Values) { o.no_journal = true; }});
+  t.push_back({0,
+               "partial",
+               {},
+               kRun,
+               "Keep the unfinished picture beside the place of the finished one while rendering, as "
+               "NAME.partial.SUFFIX.",
+               [](Options& o, Values) { o.partial = true; }});
+  t.push_back({0,
+               "partial-interval",
+               {"SECONDS"},
+               kRun,
+               "Write the unfinished picture anew every so many seconds (30 without it), but never for more "
+               "than a twentieth of the time. Implies --partial.",
+               [](Options& o, Values v) {
+                 o.partial = true;
+                 o.partial_interval = parse_real(v[0], "--partial-interval");
+                 if (!(o.partial_interval >= 0 && o.partial_interval <= 1e9))
+                   throw UsageError("--partial-interval: '" + v[0] + "' is not a number of seconds");
+               }});
 
   // Reports
   t.push_back({'q', "quiet", {}, kReport, "Print nothing but warnings and errors.", [](Options& o, Values) {
@@ -447,9 +473,14 @@ std::vector<OptionSpec> make_table() {
 
 }  // namespace
 
-const std::vector<OptionSpec>& option_table() {
+const std::vector<OptionSpec>& option_table(Program program) {
   static const std::vector<OptionSpec> table = make_table();
-  return table;
+  static const std::vector<OptionSpec> with_cluster = [] {
+    std::vector<OptionSpec> all = cluster_option_table();
+    all.insert(all.begin(), table.begin(), table.end());
+    return all;
+  }();
+  return program == Program::kPafas ? with_cluster : table;
 }
 
 }  // namespace rayshade

@@ -9,15 +9,15 @@
 namespace rayshade {
 namespace {
 
-const OptionSpec* find_letter(char letter) {
-  for (const OptionSpec& spec : option_table()) {
+const OptionSpec* find_letter(Program program, char letter) {
+  for (const OptionSpec& spec : option_table(program)) {
     if (spec.letter == letter) return &spec;
   }
   return nullptr;
 }
 
-const OptionSpec* find_name(const std::string& name) {
-  for (const OptionSpec& spec : option_table()) {
+const OptionSpec* find_name(Program program, const std::string& name) {
+  for (const OptionSpec& spec : option_table(program)) {
     if (spec.name == name) return &spec;
   }
   return nullptr;
@@ -64,9 +64,9 @@ std::string escaped(const std::string& text) {
 }
 
 /// Options in the order of their groups, as (group, members).
-std::vector<std::pair<std::string, std::vector<const OptionSpec*>>> grouped() {
+std::vector<std::pair<std::string, std::vector<const OptionSpec*>>> grouped(Program program) {
   std::vector<std::pair<std::string, std::vector<const OptionSpec*>>> groups;
-  for (const OptionSpec& spec : option_table()) {
+  for (const OptionSpec& spec : option_table(program)) {
     if (groups.empty() || groups.back().first != spec.group) groups.push_back({spec.group, {}});
     groups.back().second.push_back(&spec);
   }
@@ -75,7 +75,9 @@ std::vector<std::pair<std::string, std::vector<const OptionSpec*>>> grouped() {
 
 }  // namespace
 
-Options parse_options(std::span<const std::string> arguments) {
+const char* program_name(Program program) { return program == Program::kPafas ? "pafas" : "rayshade"; }
+
+Options parse_options(std::span<const std::string> arguments, Program program) {
   Options options;
   bool only_files = false, have_input = false;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -95,10 +97,10 @@ Options parse_options(std::span<const std::string> arguments) {
     std::optional<std::string> attached;
     if (argument.starts_with("--")) {
       const std::size_t equals = argument.find('=');
-      spec = find_name(argument.substr(2, equals == std::string::npos ? equals : equals - 2));
+      spec = find_name(program, argument.substr(2, equals == std::string::npos ? equals : equals - 2));
       if (equals != std::string::npos) attached = argument.substr(equals + 1);
     } else if (argument.size() >= 2) {
-      spec = find_letter(argument[1]);
+      spec = find_letter(program, argument[1]);
       if (spec && argument.size() > 2) {
         throw UsageError(
             fmt::format("'{}': letters are not joined; values follow as words of their own", argument));
@@ -124,14 +126,20 @@ Options parse_options(std::span<const std::string> arguments) {
   return options;
 }
 
-std::string usage_line() { return "usage: rayshade [OPTION...] [SCENE]"; }
+std::string usage_line(Program program) {
+  return fmt::format("usage: {} [OPTION...] [SCENE]", program_name(program));
+}
 
-std::string help_text() {
-  std::string out = usage_line() +
-                    "\n\nRender a Rayshade 4.0 scene (or standard input) to a picture.\n"
-                    "Values follow their option as words of their own; negative numbers are values.\n";
+std::string help_text(Program program) {
+  const bool cluster = program == Program::kPafas;
+  std::string out =
+      usage_line(program) +
+      (cluster
+           ? "\n\nRender a Rayshade 4.0 scene (or standard input) to a picture, on all ranks of an MPI job.\n"
+           : "\n\nRender a Rayshade 4.0 scene (or standard input) to a picture.\n") +
+      "Values follow their option as words of their own; negative numbers are values.\n";
   constexpr std::size_t kIndent = 34, kWidth = 100;
-  for (const auto& [group, members] : grouped()) {
+  for (const auto& [group, members] : grouped(program)) {
     out += fmt::format("\n{}:\n", group);
     for (const OptionSpec* spec : members) {
       const std::string head =
@@ -149,13 +157,14 @@ std::string help_text() {
   out +=
       "\nExit status: 0 picture complete, 1 error in the scene or while rendering, 2 wrong usage, 3 stopped "
       "before the\n"
-      "end (the partial picture is kept as NAME.partial.EXT). See rayshade(1) and rayshade(5).\n";
+      "end (the partial picture is kept as NAME.partial.EXT). See ";
+  out += cluster ? "pafas(1), rayshade(1) and rayshade(5).\n" : "rayshade(1) and rayshade(5).\n";
   return out;
 }
 
-std::string man_options() {
+std::string man_options(Program program) {
   std::string out;
-  for (const auto& [group, members] : grouped()) {
+  for (const auto& [group, members] : grouped(program)) {
     out += fmt::format(".SS {}\n", group);
     for (const OptionSpec* spec : members) {
       out += ".TP\n";
@@ -168,9 +177,9 @@ std::string man_options() {
   return out;
 }
 
-std::string bash_completion() {
+std::string bash_completion(Program program) {
   std::string words, cases;
-  for (const OptionSpec& spec : option_table()) {
+  for (const OptionSpec& spec : option_table(program)) {
     std::string pattern = fmt::format("--{}", spec.name);
     words += (words.empty() ? "" : " ") + pattern;
     if (spec.letter) {
@@ -189,20 +198,20 @@ std::string bash_completion() {
     cases += fmt::format("    {}) {}; return ;;\n", pattern, action);
   }
   return fmt::format(
-      "# bash completion for rayshade; made from the program's own table of options\n"
-      "_rayshade() {{\n"
+      "# bash completion for {0}; made from the program's own table of options\n"
+      "_{0}() {{\n"
       "  local cur prev\n"
       "  cur=${{COMP_WORDS[COMP_CWORD]}}\n"
       "  prev=${{COMP_WORDS[COMP_CWORD-1]}}\n"
-      "  case $prev in\n{}  esac\n"
+      "  case $prev in\n{1}  esac\n"
       "  if [[ $cur == -* ]]; then\n"
-      "    COMPREPLY=($(compgen -W '{}' -- \"$cur\"))\n"
+      "    COMPREPLY=($(compgen -W '{2}' -- \"$cur\"))\n"
       "  else\n"
       "    COMPREPLY=($(compgen -f -X '!*.ray' -- \"$cur\") $(compgen -d -- \"$cur\"))\n"
       "  fi\n"
       "}}\n"
-      "complete -o filenames -F _rayshade rayshade\n",
-      cases, words);
+      "complete -o filenames -F _{0} {0}\n",
+      program_name(program), cases, words);
 }
 
 int parse_int(const std::string& text, const std::string& option, int lowest, int highest) {

@@ -2,6 +2,8 @@
 #include "rayshade/cli/pictures.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "rayshade/image/layer_picture.h"
 
@@ -109,6 +111,16 @@ std::string PictureOutput::write_partial(const FrameBuffer& picture, int frame) 
   write_picture(picture, format_, info(frame), file);
   file.commit();
   return partial;
+}
+
+void PictureOutput::remove_partial(int frame) {
+  if (name_ != "-") unlink(partial_name(file_name(name_, frame)).c_str());
+}
+
+std::optional<std::uint64_t> PictureOutput::frame_file_bytes(int frame) const {
+  struct stat info {};
+  if (name_ == "-" || appended_ || stat(file_name(name_, frame).c_str(), &info) != 0) return {};
+  return static_cast<std::uint64_t>(info.st_size);
 }
 
 void PictureOutput::finish() {

@@ -32,6 +32,10 @@ class PictureOutput {
   /// Writes what is there of a frame beside the real name; nothing where frames go to standard output.
   /// Returns the name of the file, empty if there is none.
   std::string write_partial(const FrameBuffer& picture, int frame);
+  /// Removes the file of write_partial, if there is one.
+  void remove_partial(int frame);
+  /// The size of this frame's file; nothing where it has none of its own (yet).
+  std::optional<std::uint64_t> frame_file_bytes(int frame) const;
   /// The name of a file for this frame: `pattern` with the number of the frame, if it has a place for it.
   std::string file_name(const std::string& pattern, int frame) const;
   /// After the last frame: the file of appended frames gets its name.

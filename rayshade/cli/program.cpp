@@ -14,6 +14,7 @@
 #include <memory>
 #include <new>
 
+#include "rayshade/cli/kept_work.h"
 #include "rayshade/cli/options.h"
 #include "rayshade/cli/pictures.h"
 #include "rayshade/cli/progress.h"
@@ -21,7 +22,9 @@
 #include "rayshade/cli/signals.h"
 #include "rayshade/cli/tree_svg.h"
 #include "rayshade/lang/parse.h"
+#include "rayshade/render/picture_identity.h"
 #include "rayshade/render/renderer.h"
+#include "rayshade/scene/hashing_provider.h"
 #include "rayshade/scene/provider.h"
 
 namespace rayshade {
@@ -33,7 +36,9 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void complain(const std::string& text) { fmt::print(stderr, "rayshade: {}\n", text); }
+void complain(const Engine& engine, const std::string& text) {
+  fmt::print(stderr, "{}: {}\n", engine.program(), text);
+}
 
 struct CloseFile {
   void operator()(std::FILE* file) const {
@@ -62,8 +67,7 @@ void write_text(const std::string& name, const std::string& text) {
 /// One run of the program, step by step; each step may end it.
 class Run {
  public:
-  Run(Options options, decltype(RenderOptions::wrap) wrap)
-      : options_(std::move(options)), wrap_(std::move(wrap)) {}
+  Run(Options options, Engine& engine) : options_(std::move(options)), engine_(engine) {}
 
   int go() {
     open_report();
@@ -75,7 +79,7 @@ class Run {
     settings_ = resolve_settings(scene_.settings, options_.settings);
     take_report_settings();
     if (options_.action == Action::kRender) return render();
-    Renderer renderer(scene_, settings_, provider_, render_options());
+    Renderer renderer(scene_, settings_, engine_.provider(), render_options());
     if (options_.action == Action::kExplain) return explain(renderer);
     if (!options_.quiet) {
       fmt::print(stderr, "{}: {} primitive{}, {} error{}, {} warning{}\n", scene_name(),
@@ -90,7 +94,7 @@ class Run {
   }
 
  private:
-  std::string scene_name() const { return options_.input.empty() ? "-" : options_.input; }
+  std::string scene_name() const { return options_.scene(); }
   bool chatty() const { return report_.get() != stderr || !options_.quiet; }
 
   void open_report() {
@@ -121,16 +125,7 @@ class Run {
 
   bool read_scene() {
     const Clock::time_point start = Clock::now();
-    ParseOptions parse;
-    parse.preprocessing = options_.preprocess == Preprocess::kNever ? Preprocessing::kNever
-                          : options_.preprocessor_arguments         ? Preprocessing::kAlways
-                                                                    : Preprocessing::kAuto;
-    if (options_.preprocessor_arguments) {
-      parse.preprocessor_arguments = split_arguments(*options_.preprocessor_arguments);
-    }
-    parse.flip_normals = options_.settings.flip_normals;
-    parse.verbose = options_.verbose;
-    ParseResult result = parse_scene(provider_, scene_name(), parse);
+    ParseResult result = parse_scene(engine_.provider(), scene_name(), parsing_options(options_));
     const bool color = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
     const bool quiet = options_.quiet || result.scene.settings.quiet;
     for (const std::string& line : result.prints) fmt::print(stderr, "{}", line);
@@ -145,18 +140,11 @@ class Run {
   }
 
   RenderOptions render_options() const {
-    RenderOptions out;
-    out.threads = options_.threads > 0 ? options_.threads : available_threads();
-    out.block_side = options_.block;
-    out.intersector = options_.intersector;
-    out.fas_memory = options_.fas_memory;
-    out.fas_split = options_.fas_split;
-    out.wrap = wrap_;
-    out.verify = options_.verify;
-    out.report_difference = [](const std::string& text) { fmt::print(stderr, "rayshade: error: {}", text); };
-    out.layers = options_.layers.has_value();
-    out.cost = options_.cost_map.has_value();
-    out.sample_map = options_.sample_map;
+    RenderOptions out = rendering_options(options_, engine_.machine_share());
+    out.report_difference = [this](const std::string& text) {
+      fmt::print(stderr, "{}: error: {}", engine_.program(), text);
+    };
+    engine_.adjust(out);
     return out;
   }
 
@@ -168,7 +156,7 @@ class Run {
     }
     write_text(options_.output.value_or("-"),
                renderer.explain(settings_.first_frame, options_.explain_x, options_.explain_y));
-    return verified(renderer, kComplete);
+    return verified(renderer.statistics(), kComplete);
   }
 
   /// The picture's memory against what may be taken, before anything large is allocated.
@@ -197,14 +185,14 @@ class Run {
     if (name == "-" && isatty(STDOUT_FILENO)) {
       throw UsageError("standard output is a terminal: name a file with -O, or redirect");
     }
-    if (options_.resume) {
-      if (name == "-") throw RenderError("-c needs the name of the picture: -O, or outfile in the scene", {});
-      complain("warning: this version keeps no journal to continue from; rendering from the start");
-    }
+    if (options_.resume && options_.no_journal)
+      throw UsageError("-c continues from a journal: not with --no-journal");
     const FrameBufferOptions buffer = output.frame_buffer_options(
         check_memory(output.frame_buffer_options(options_.memory_limit.value_or(available_memory()))));
-    Renderer renderer(scene_, settings_, provider_, render_options());
+    HashingProvider files(engine_.provider());
+    Renderer renderer(scene_, settings_, files, render_options());
     if (options_.fas_dump && !renderer.eye_tree()) throw UsageError("--fas-dump: " + why_no_eye_tree());
+    run_.program = engine_.program();
     run_.scene = scene_name();
     run_.version = RAYSHADE_VERSION;
     run_.scene_hash = scene_hash(scene_);
@@ -219,35 +207,65 @@ class Run {
     }
 
     FrameBuffer picture(buffer);
+    const PictureFormat format = format_of(picture);
+    const auto say = [this](const std::string& text) { complain(engine_, text); };
+    KeptWork kept(options_, output, say, [&](const std::string& text) {
+      if (!options_.quiet) say(text);
+    });
+    kept.open(
+        name,
+        [&] {
+          return picture_identity(scene_, run_.scene_hash, settings_, format, options_.sample_map,
+                                  files.hashes(), RAYSHADE_VERSION);
+        },
+        picture);
+    engine_.begin({options_, settings_, renderer, format, run_.scene_hash});
     Progress progress(report_.get(), {!chatty(), report_.get() == stderr && isatty(STDERR_FILENO) != 0,
                                       options_.report_frequency.value_or(0), settings_.min_y});
     SignalRequests requests;
     bool complete = true;
     for (int i = 0; i < settings_.frames && complete; ++i) {
       const int frame = settings_.first_frame + i;
-      if (i > 0) picture.clear();
+      if (kept.finished_before(frame)) continue;
+      picture.clear();
+      kept.load(frame, picture);
       progress.start(settings_.frames > 1 ? fmt::format("frame {} ({} of {})", frame, i + 1, settings_.frames)
                                           : "rendering");
-      complete = renderer.render_frame(frame, picture, requests.stop(), [&](const FrameProgress& now) {
-        progress.update(now);
-        if (requests.take_progress()) progress.print_now(now);
-        if (requests.take_save()) output.write_partial(picture, frame);
-      });
+      complete = engine_.render_frame(renderer, {frame, picture, requests.stop(),
+                                                 [&](const FrameProgress& now) {
+                                                   progress.update(now);
+                                                   if (requests.take_progress()) progress.print_now(now);
+                                                   kept.tend(frame, picture);
+                                                   if (requests.take_save()) {
+                                                     kept.save();
+                                                     output.write_partial(picture, frame);
+                                                   }
+                                                 },
+                                                 kept.keeper(frame, picture)});
       progress.finish();
       if (complete) {
         output.write_frame(picture, frame);
+        kept.finish_frame(frame);
         if (options_.fas_dump)
           write_text(output.file_name(*options_.fas_dump, frame), tree_drawing(renderer, picture, frame));
       } else {
+        kept.save();
         const std::string partial = output.write_partial(picture, frame);
-        complain(partial.empty() ? "stopped; no partial picture is kept on standard output"
-                                 : fmt::format("stopped; the partial picture is {}", partial));
+        complain(engine_, partial.empty()
+                              ? "stopped; no partial picture is kept on standard output"
+                              : fmt::format("stopped; the partial picture is {}{}", partial, kept.advice()));
       }
     }
     if (complete || renderer.statistics().frames > 0) output.finish();
-    const bool differs = renderer.statistics().verify.differing > 0;
-    report(renderer, differs ? "differs" : complete ? "complete" : "stopped");
-    return verified(renderer, complete ? kComplete : kStopped);
+    if (complete) kept.finish();
+    run_.blocks_resumed = kept.blocks_resumed();
+    run_.pixels_resumed = kept.pixels_resumed();
+    run_.frames_resumed = kept.frames_resumed();
+    RenderStatistics statistics = renderer.statistics();
+    engine_.end(statistics);
+    const bool differs = statistics.verify.differing > 0;
+    report(statistics, differs ? "differs" : complete ? "complete" : "stopped");
+    return verified(statistics, complete ? kComplete : kStopped);
   }
 
   std::string why_no_eye_tree() const {
@@ -275,29 +293,31 @@ class Run {
   }
 
   /// The exit code, after a last word about what --verify found.
-  static ExitCode verified(const Renderer& renderer, ExitCode code) {
-    const VerifyCounts& found = renderer.statistics().verify;
+  ExitCode verified(const RenderStatistics& statistics, ExitCode code) const {
+    const VerifyCounts& found = statistics.verify;
     if (found.differing == 0) return code;
-    complain(fmt::format("error: of {} rays verified, {} have another answer than brute force gives",
-                         found.rays(), found.differing));
+    complain(engine_, fmt::format("error: of {} rays verified, {} have another answer than brute force gives",
+                                  found.rays(), found.differing));
     return kDiffers;
   }
 
-  void report(const Renderer& renderer, const char* outcome) {
+  void report(const RenderStatistics& statistics, const char* outcome) {
     run_.outcome = outcome;
     note_resources(run_, start_);
     if (chatty()) {
-      fmt::print(report_.get(), "{}", statistics_text(renderer.statistics(), run_, options_.verbose));
+      fmt::print(report_.get(), "{}{}", statistics_text(statistics, run_, options_.verbose),
+                 engine_.report_text(options_.verbose));
       std::fflush(report_.get());
     }
     if (options_.stats_file) {
-      write_text(*options_.stats_file, statistics_json(renderer.statistics(), settings_, run_));
+      write_text(*options_.stats_file, statistics_json(statistics, settings_, run_, [this](JsonWriter& json) {
+        engine_.report_json(json);
+      }));
     }
   }
 
   Options options_;
-  decltype(RenderOptions::wrap) wrap_;
-  FileProvider provider_;
+  Engine& engine_;
   Scene scene_;
   RenderSettings settings_;
   RunSummary run_;
@@ -319,38 +339,38 @@ int guarded(Run& run) {
 
 }  // namespace
 
-int run_program(const std::vector<std::string>& arguments, const decltype(RenderOptions::wrap)& wrap) {
+int run_program(const std::vector<std::string>& arguments, Engine& engine) {
   try {
-    const Options options = parse_options(arguments);
+    const Options options = parse_options(arguments, engine.kind());
     switch (options.action) {
       case Action::kHelp:
-        fmt::print("{}", help_text());
+        fmt::print("{}", help_text(engine.kind()));
         return kComplete;
       case Action::kVersion:
-        fmt::print("rayshade {}\n", RAYSHADE_VERSION);
+        fmt::print("{} {}\n", engine.program(), RAYSHADE_VERSION);
         return kComplete;
       case Action::kManOptions:
-        fmt::print("{}", man_options());
+        fmt::print("{}", man_options(engine.kind()));
         return kComplete;
       case Action::kCompletion:
-        fmt::print("{}", bash_completion());
+        fmt::print("{}", bash_completion(engine.kind()));
         return kComplete;
       default:
         break;
     }
-    Run run(options, wrap);
+    Run run(options, engine);
     return guarded(run);
   } catch (const UsageError& error) {
-    complain(error.what());
-    fmt::print(stderr, "Try 'rayshade --help'.\n");
+    complain(engine, error.what());
+    fmt::print(stderr, "Try '{} --help'.\n", engine.program());
     return kUsage;
   } catch (const FormatError& error) {
-    complain(error.what());
+    complain(engine, error.what());
     return kUsage;
   } catch (const std::bad_alloc&) {
-    complain("out of memory");
+    complain(engine, "out of memory");
   } catch (const std::exception& error) {
-    complain(error.what());
+    complain(engine, error.what());
   }
   return kFailed;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The program rayshade: options to exit code.
+// The programs: options to exit code. What renders is an engine.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "rayshade/render/renderer.h"
+#include "rayshade/cli/engine.h"
 
 namespace rayshade {
 
@@ -19,7 +19,7 @@ enum ExitCode : int {
 };
 
 /// Runs with the arguments after the program's name. Talks on standard error, writes pictures and requested
-/// data to standard output only where asked to; never throws. `wrap`: RenderOptions::wrap, for tests.
-int run_program(const std::vector<std::string>& arguments, const decltype(RenderOptions::wrap)& wrap = {});
+/// data to standard output only where asked to; never throws.
+int run_program(const std::vector<std::string>& arguments, Engine& engine);
 
 }  // namespace rayshade

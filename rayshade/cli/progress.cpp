@@ -30,14 +30,15 @@ void Progress::start(const std::string& what) {
 
 std::string Progress::line(const FrameProgress& now) const {
   const double elapsed = seconds_between(started_, Clock::now());
-  const double share =
-      now.pixels > 0 ? static_cast<double>(now.pixels_done) / static_cast<double>(now.pixels) : 1;
-  std::string out = fmt::format("{}: {:3.0f} %, {}", what_, 100 * share, duration_text(elapsed));
-  if (share > 0)
-    out += fmt::format(", {:.3g} kpixel/s", static_cast<double>(now.pixels_done) / elapsed / 1000);
+  const double done = static_cast<double>(now.pixels_done), all = static_cast<double>(now.pixels);
+  // What was there before counts as done, but says nothing of how fast this run is.
+  const double rendered = static_cast<double>(now.pixels_done - now.pixels_before);
+  std::string out =
+      fmt::format("{}: {:3.0f} %, {}", what_, all > 0 ? 100 * done / all : 100, duration_text(elapsed));
+  if (rendered > 0) out += fmt::format(", {:.3g} kpixel/s", rendered / elapsed / 1000);
   // A guess from the first blocks would be a lie.
-  if (share > 0.02 && share < 1)
-    out += fmt::format(", {} left", duration_text(elapsed * (1 - share) / share));
+  if (rendered > 0.02 * (all - static_cast<double>(now.pixels_before)) && done < all)
+    out += fmt::format(", {} left", duration_text(elapsed * (all - done) / rendered));
   return out;
 }
 

@@ -140,11 +140,12 @@ std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bo
   return out;
 }
 
-std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, const RunSummary& run) {
+std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, const RunSummary& run,
+                            const std::function<void(JsonWriter&)>& more) {
   JsonWriter j;
   const ShadingCounts& c = s.shading;
   j.begin_object();
-  j.value("program", "rayshade").value("version", run.version).value("scene", run.scene);
+  j.value("program", run.program).value("version", run.version).value("scene", run.scene);
   j.value("scene_hash", run.scene_hash).value("outcome", run.outcome);
   j.begin_object("settings");
   j.value("width", r.width).value("height", r.height);
@@ -157,6 +158,9 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
   j.value("samples", r.samples).value("jitter", r.jitter).value("max_depth", r.max_depth);
   j.value("seed", r.seed).value("first_frame", r.first_frame).value("frames", r.frames);
   j.end_object();
+  j.begin_object("resumed");
+  j.value("blocks", run.blocks_resumed).value("pixels", run.pixels_resumed);
+  j.value("frames", run.frames_resumed).end_object();
   j.begin_object("rays");
   j.value("eye", c.eye_rays).value("shadow", c.shadow_rays).value("reflected", c.reflected_rays);
   j.value("transmitted", c.transmitted_rays)
@@ -208,6 +212,7 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
   j.value("cpu_seconds", run.total_cpu_seconds).value("wall_seconds", run.wall_seconds);
   j.value("peak_memory_bytes", run.peak_memory);
   j.end_object();
+  if (more) more(j);
   j.end_object();
   return j.text();
 }

@@ -3,6 +3,7 @@
 // numbers.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "rayshade/render/renderer.h"
@@ -10,12 +11,18 @@
 
 namespace rayshade {
 
+class JsonWriter;
+
 /// How a run ended; `--stats` records it.
 struct RunSummary {
+  std::string program = "rayshade";
   std::string scene;  ///< name as given
   std::string scene_hash;
   std::string version;
   std::string outcome;  ///< "complete", "stopped", or "differs": --verify found something
+  /// What earlier runs had done, and this one did not render again.
+  std::uint64_t blocks_resumed = 0, pixels_resumed = 0;
+  int frames_resumed = 0;
   double parse_seconds = 0;
   double total_cpu_seconds = 0;  ///< user and system, of the process
   double wall_seconds = 0;
@@ -26,8 +33,8 @@ struct RunSummary {
 std::string settings_text(const RenderSettings& settings, const Renderer& renderer);
 /// The statistics table; `verbose` adds what was skipped and where time went.
 std::string statistics_text(const RenderStatistics& statistics, const RunSummary& run, bool verbose);
-/// All of it as one JSON object.
+/// All of it as one JSON object; `more` writes further members.
 std::string statistics_json(const RenderStatistics& statistics, const RenderSettings& settings,
-                            const RunSummary& run);
+                            const RunSummary& run, const std::function<void(JsonWriter&)>& more = {});
 
 }  // namespace rayshade

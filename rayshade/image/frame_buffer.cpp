@@ -217,21 +217,23 @@ void FrameBuffer::mark(std::int64_t x, std::int64_t y, std::int64_t width, std::
   present_.fetch_add(fresh, std::memory_order_acq_rel);
 }
 
-bool FrameBuffer::is_present(std::int64_t x, std::int64_t y) const {
-  auto* const bits = reinterpret_cast<std::uint64_t*>(present_bits_.data());
-  const std::atomic_ref<std::uint64_t> word(bits[y * words_per_row_ + x / 64]);
-  return (word.load(std::memory_order_acquire) >> (x % 64) & 1) != 0;
-}
+bool FrameBuffer::is_present(std::int64_t x, std::int64_t y) const { return is_present(x, y, 1, 1); }
 
-bool FrameBuffer::row_complete(std::int64_t y) const {
+bool FrameBuffer::is_present(std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height) const {
   auto* const bits = reinterpret_cast<std::uint64_t*>(present_bits_.data());
-  for (std::int64_t x = 0; x < width_; x += 64) {
-    const std::int64_t count = std::min<std::int64_t>(64, width_ - x);
-    const std::atomic_ref<std::uint64_t> word(bits[y * words_per_row_ + x / 64]);
-    if (word.load(std::memory_order_acquire) != ~std::uint64_t{0} >> (64 - count)) return false;
+  for (std::int64_t row = y; row < y + height; ++row) {
+    for (std::int64_t begin = x; begin < x + width;) {
+      const std::int64_t end = std::min((begin / 64 + 1) * 64, x + width);
+      const std::uint64_t mask = (~std::uint64_t{0} >> (64 - (end - begin))) << (begin % 64);
+      const std::atomic_ref<std::uint64_t> word(bits[row * words_per_row_ + begin / 64]);
+      if ((word.load(std::memory_order_acquire) & mask) != mask) return false;
+      begin = end;
+    }
   }
   return true;
 }
+
+bool FrameBuffer::row_complete(std::int64_t y) const { return is_present(0, y, width_, 1); }
 
 PixelStatistics FrameBuffer::statistics() const {
   const std::lock_guard lock(statistics_mutex_);

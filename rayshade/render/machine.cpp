@@ -2,6 +2,7 @@
 // What this machine and this job allow.
 #include <sched.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -61,12 +62,15 @@ std::uint64_t available_memory() {
   return bytes;
 }
 
-int available_threads() {
+int available_threads(int share) {
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   cpu_set_t set;
   CPU_ZERO(&set);
   if (sched_getaffinity(0, sizeof set, &set) == 0) threads = std::max(1, CPU_COUNT(&set));
-  if (const int quota = quota_cpus(); quota > 0) threads = std::min(threads, quota);
+  // A process that is bound to some processors has them for itself; if it may use all, so may the others.
+  const long online = sysconf(_SC_NPROCESSORS_ONLN);
+  if (threads >= online) threads = std::max(1, threads / share);
+  if (const int quota = quota_cpus(); quota > 0) threads = std::min(threads, std::max(1, quota / share));
   if (const char* slurm = std::getenv("SLURM_CPUS_PER_TASK")) {
     if (const int granted = std::atoi(slurm); granted > 0) threads = std::min(threads, granted);
   }

@@ -4,14 +4,10 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <condition_variable>
-#include <ctime>
-#include <exception>
-#include <mutex>
-#include <thread>
 
 #include "rayshade/render/explain.h"
 #include "rayshade/render/object_numbers.h"
+#include "rayshade/render/picture_feed.h"
 #include "rayshade/schedule/block_grid.h"
 #include "rayshade/texture/compiled_textures.h"
 
@@ -22,12 +18,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double thread_cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 Interval shutter_of(const RenderSettings& settings, int frame) {
@@ -48,68 +38,6 @@ auto located(const Work& work) {
     throw RenderError(fmt::format("{} at time {}", error.what(), error.time), error.location);
   }
 }
-
-/// Float layers of a block, in the order of the frame buffer's layers.
-class LayerSpans {
- public:
-  explicit LayerSpans(const std::vector<std::string>& names) {
-    for (const std::string& name : names) {
-      if (name == "depth.Z")
-        fields_.push_back(offsetof(BlockPixels::Layer, depth));
-      else if (name == "normal.X")
-        fields_.push_back(offsetof(BlockPixels::Layer, normal));
-      else if (name == "normal.Y")
-        fields_.push_back(offsetof(BlockPixels::Layer, normal) + sizeof(float));
-      else if (name == "normal.Z")
-        fields_.push_back(offsetof(BlockPixels::Layer, normal) + 2 * sizeof(float));
-      else if (name == "object")
-        fields_.push_back(offsetof(BlockPixels::Layer, object));
-      else if (name == "samples")
-        fields_.push_back(offsetof(BlockPixels::Layer, samples));
-      else if (name == "tests")
-        fields_.push_back(offsetof(BlockPixels::Layer, tests));
-      else if (name == "bounds_tests")
-        fields_.push_back(offsetof(BlockPixels::Layer, bounds_tests));
-      else if (name == "microseconds")
-        fields_.push_back(offsetof(BlockPixels::Layer, microseconds));
-      else if (name == "rays")
-        fields_.push_back(offsetof(BlockPixels::Layer, rays));
-      else if (name == "tree_rays")
-        fields_.push_back(offsetof(BlockPixels::Layer, tree_rays));
-      else
-        throw std::invalid_argument("unknown layer " + name);
-    }
-    values_.resize(fields_.size());
-  }
-
-  std::vector<std::span<const float>> of(const BlockPixels& block) {
-    std::vector<std::span<const float>> spans;
-    for (std::size_t i = 0; i < fields_.size(); ++i) {
-      values_[i].clear();
-      for (const BlockPixels::Layer& layer : block.layers) {
-        values_[i].push_back(
-            *reinterpret_cast<const float*>(reinterpret_cast<const char*>(&layer) + fields_[i]));
-      }
-      spans.emplace_back(values_[i]);
-    }
-    return spans;
-  }
-
- private:
-  std::vector<std::size_t> fields_;
-  std::vector<std::vector<float>> values_;
-};
-
-/// What the threads of one frame share.
-struct Crew {
-  std::atomic<std::int64_t> next{0};
-  std::atomic<bool> failed{false};
-  std::mutex mutex;
-  std::condition_variable news;
-  int working = 0;
-  FrameProgress progress;
-  std::exception_ptr error;
-};
 
 }  // namespace
 
@@ -204,83 +132,44 @@ void Renderer::prepare_frame(int frame) {
   if (options_.layers && frame_.numbers.empty()) frame_.numbers = object_numbers(*compiled_);
 }
 
-bool Renderer::render_frame(int frame, FrameBuffer& picture, const std::atomic<bool>& stop,
-                            const std::function<void(const FrameProgress&)>& progress) {
-  const Clock::time_point start = Clock::now();
+std::unique_ptr<FrameCrew> Renderer::start_frame(int frame, const PictureFormat& format, BlockFeed& feed,
+                                                 int threads) {
   prepare_frame(frame);
-  const int width = settings_.window_width(), height = settings_.window_height();
-  const int side =
-      options_.block_side > 0 ? options_.block_side : default_block_side(width, height, options_.threads);
-  const BlockGrid grid(width, height, side);
-  const int threads = static_cast<int>(std::min<std::int64_t>(options_.threads, grid.count()));
+  return std::make_unique<FrameCrew>(
+      FrameCrew::Job{frame_, settings_, format, feed, threads, brute_force(), statistics_});
+}
 
-  Crew crew;
-  crew.working = threads;
-  crew.progress = {0, grid.count(), 0, std::int64_t{width} * height, 0};
-  std::vector<int> columns_left(static_cast<std::size_t>(grid.rows()), grid.columns());
-
-  const auto work = [&] {
-    const double cpu = thread_cpu_seconds();
-    BlockRenderer renderer(frame_);
-    renderer.tree().scratch().brute_force = brute_force();
-    try {
-      LayerSpans layers(picture.layers());
-      BlockPixels pixels;
-      while (!stop.load(std::memory_order_relaxed) && !crew.failed.load(std::memory_order_relaxed)) {
-        const std::int64_t number = crew.next.fetch_add(1, std::memory_order_relaxed);
-        if (number >= grid.count()) break;
-        const Block block = grid.block(number);
-        const int x = settings_.min_x + block.x, y = settings_.min_y + block.y;
-        renderer.render({x, y, x + block.width, y + block.height}, pixels);
-        PixelBlock out{block.x, block.y, block.width, block.height, pixels.rgba, layers.of(pixels)};
-        picture.put(out);
-        const std::lock_guard lock(crew.mutex);
-        ++crew.progress.blocks_done;
-        crew.progress.pixels_done += std::int64_t{block.width} * block.height;
-        --columns_left[static_cast<std::size_t>(number / grid.columns())];
-      }
-    } catch (...) {
-      const std::lock_guard lock(crew.mutex);
-      if (!crew.error) crew.error = std::current_exception();
-      crew.failed = true;
-    }
-    const std::lock_guard lock(crew.mutex);
-    statistics_.trace.add(renderer.tree().scratch().counts);
-    intersector_->report(renderer.tree().scratch(), statistics_.intersector);
-    statistics_.shading.add(renderer.tree().counts());
-    statistics_.sampling.add(renderer.counts());
-    statistics_.peak_tree_nodes =
-        std::max<std::uint64_t>(statistics_.peak_tree_nodes, renderer.tree().peak_nodes());
-    statistics_.cpu_seconds += thread_cpu_seconds() - cpu;
-    --crew.working;
-    crew.news.notify_all();
-  };
-
-  {
-    std::vector<std::jthread> crew_threads;
-    crew_threads.reserve(static_cast<std::size_t>(threads));
-    for (int i = 0; i < threads; ++i) crew_threads.emplace_back(work);
-    std::unique_lock lock(crew.mutex);
-    std::size_t top_row = 0;
-    while (crew.working > 0) {
-      crew.news.wait_for(lock, std::chrono::milliseconds(100));
-      while (top_row < columns_left.size() && columns_left[top_row] == 0) ++top_row;
-      crew.progress.rows_done = std::min<std::int64_t>(height, static_cast<std::int64_t>(top_row) * side);
-      const FrameProgress now = crew.progress;
-      lock.unlock();
-      if (progress) progress(now);
-      lock.lock();
-    }
-  }
-  statistics_.render_seconds += seconds_since(start);
+void Renderer::finish_frame(FrameCrew& crew) {
+  located([&] { crew.finish(); });
   if (verifier_) statistics_.verify = verifier_->counts();
-  if (crew.error) located([&] { std::rethrow_exception(crew.error); });
+}
+
+bool Renderer::render_frame(const FrameJob& job) {
+  const Clock::time_point start = Clock::now();
+  FrameBuffer& picture = job.picture;
+  const int width = settings_.window_width(), height = settings_.window_height();
+  PictureFeed feed(job, options_.block_side > 0 ? options_.block_side
+                                                : default_block_side(width, height, options_.threads));
+  const PixelStatistics before = picture.statistics();
+  if (feed.missing() > 0) {
+    const int threads = static_cast<int>(std::min<std::int64_t>(options_.threads, feed.missing()));
+    const std::unique_ptr<FrameCrew> crew = start_frame(job.frame, format_of(picture), feed, threads);
+    for (bool ended = false; !ended;) {
+      ended = crew->wait(0.1);
+      if (job.progress) job.progress(feed.progress());
+    }
+    finish_frame(*crew);
+  }
+  count_frame(picture, before, seconds_since(start));
+  return picture.complete();
+}
+
+void Renderer::count_frame(const FrameBuffer& picture, const PixelStatistics& before, double seconds) {
+  statistics_.render_seconds += seconds;
   const PixelStatistics seen = picture.statistics();
-  statistics_.nan_pixels += seen.not_a_number;
-  statistics_.negative_pixels += seen.negative;
-  if (!picture.complete()) return false;
-  ++statistics_.frames;
-  return true;
+  statistics_.nan_pixels += seen.not_a_number - before.not_a_number;
+  statistics_.negative_pixels += seen.negative - before.negative;
+  statistics_.frames += picture.complete();
 }
 
 std::string Renderer::explain(int frame, int x, int y) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A scene ready to be rendered, and the threads that render its frames.
 //
-// Blocks are handed to threads by a counter; a finished block is converted to the picture's format at once.
-// No sum depends on which thread did what when. A stop request ends after the blocks at hand, so that what is
-// in the frame buffer is whole blocks.
+// Blocks come from a feed; a finished block is converted to the picture's format at once. No sum depends on
+// which thread did what when. A stop request ends after the blocks at hand, so that what is in the frame
+// buffer is whole blocks.
 #pragma once
 
 #include <atomic>
@@ -13,6 +13,8 @@
 
 #include "rayshade/image/frame_buffer.h"
 #include "rayshade/render/block_renderer.h"
+#include "rayshade/render/frame_crew.h"
+#include "rayshade/render/frame_job.h"
 #include "rayshade/render/statistics.h"
 #include "rayshade/scene/provider.h"
 #include "rayshade/scene/scene.h"
@@ -38,13 +40,6 @@ struct RenderOptions {
   bool sample_map = false;  ///< alpha tells which pixels are fully sampled
 };
 
-/// How far a frame is.
-struct FrameProgress {
-  std::int64_t blocks_done = 0, blocks = 0;
-  std::int64_t pixels_done = 0, pixels = 0;
-  std::int64_t rows_done = 0;  ///< rows of the window that are complete from the top
-};
-
 /// An error while preparing or rendering, with its place where there is one.
 struct RenderError : std::runtime_error {
   RenderError(const std::string& what, Location where) : std::runtime_error(what), location(where) {}
@@ -60,10 +55,17 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Renders a frame into `picture` (of the size of the window). Returns false if `stop` became true before
-  /// the end. `progress` is called from the calling thread, a few times per second. Throws RenderError.
-  bool render_frame(int frame, FrameBuffer& picture, const std::atomic<bool>& stop,
-                    const std::function<void(const FrameProgress&)>& progress);
+  /// Renders what is missing of a frame. Returns false if the job was stopped before the end. Throws
+  /// RenderError.
+  bool render_frame(const FrameJob& job);
+  /// Prepares a frame and sets the threads to work on the blocks of a feed. One crew at a time; it and the
+  /// feed end before the renderer does. Throws RenderError.
+  std::unique_ptr<FrameCrew> start_frame(int frame, const PictureFormat& format, BlockFeed& feed,
+                                         int threads);
+  /// After the feed has ended: waits for the crew. Throws RenderError.
+  void finish_frame(FrameCrew& crew);
+  /// Counts a frame that took so many seconds; `before`: what had been seen in the picture by then.
+  void count_frame(const FrameBuffer& picture, const PixelStatistics& before, double seconds);
   /// The ray tree of one pixel as text.
   std::string explain(int frame, int x, int y);
 
@@ -97,7 +99,8 @@ std::uint64_t estimate_picture_bytes(const RenderSettings& settings, std::size_t
 /// Bytes that this process may still take: the smallest of the machine's available memory, the limit of its
 /// control group, and its address space limit.
 std::uint64_t available_memory();
-/// Threads that this process may use: affinity mask, control group quota, SLURM_CPUS_PER_TASK.
-int available_threads();
+/// Threads that this process may use: affinity mask, control group quota, SLURM_CPUS_PER_TASK. Where `share`
+/// processes of one job are on this machine, what is not already given to each of them is divided (rule 19).
+int available_threads(int share = 1);
 
 }  // namespace rayshade

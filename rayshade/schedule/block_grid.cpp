@@ -5,17 +5,20 @@
 
 namespace rayshade {
 
-BlockGrid::BlockGrid(int width, int height, int side)
+BlockGrid::BlockGrid(int width, int height, int side) : BlockGrid(width, height, side, side) {}
+
+BlockGrid::BlockGrid(int width, int height, int block_width, int block_height)
     : width_(width),
       height_(height),
-      side_(std::max(1, side)),
-      columns_((width_ - 1) / side_ + 1),
-      rows_((height_ - 1) / side_ + 1) {}
+      block_width_(std::max(1, block_width)),
+      block_height_(std::max(1, block_height)),
+      columns_((width_ - 1) / block_width_ + 1),
+      rows_((height_ - 1) / block_height_ + 1) {}
 
 Block BlockGrid::block(std::int64_t number) const {
   const int column = static_cast<int>(number % columns_), row = static_cast<int>(number / columns_);
-  const int x = column * side_, y = row * side_;
-  return {number, x, y, std::min(side_, width_ - x), std::min(side_, height_ - y)};
+  const int x = column * block_width_, y = row * block_height_;
+  return {number, x, y, std::min(block_width_, width_ - x), std::min(block_height_, height_ - y)};
 }
 
 int default_block_side(int width, int height, int workers) {

@@ -67,7 +67,9 @@ TEST(ManualTest, ExamplesOfTheLanguageRender) {
 TEST(ManualTest, PagesAreClean) {
   for (const std::string& page :
        {std::string(SOURCE_DIR) + "/man/rayshade.5", std::string(SOURCE_DIR) + "/man/rayshade-spd.1",
-        std::string(BINARY_DIR) + "/man/rayshade.1"}) {
+        std::string(SOURCE_DIR) + "/man/fas.3", std::string(BINARY_DIR) + "/man/rayshade.1",
+        std::string(BINARY_DIR) + "/man/pafas.1"}) {
+    if (!fs::exists(page) && page.ends_with("pafas.1")) continue;  // built without MPI
     Folder folder;
     const std::string log = (folder.path() / "log").string();
     EXPECT_EQ(std::system(("LC_ALL=C.UTF-8 MANROFFSEQ= MANWIDTH=80 man --warnings -E UTF-8 -l '" + page +

@@ -20,6 +20,20 @@ using ::testing::Not;
 using testing_tools::Folder;
 using testing_tools::read_file;
 
+class LyingEngine : public LocalEngine {
+ public:
+  LyingEngine(std::uint64_t every_nearest, std::uint64_t every_occlusion)
+      : every_nearest_(every_nearest), every_occlusion_(every_occlusion) {}
+  void adjust(RenderOptions& options) const override {
+    options.wrap = [this](const CompiledScene&, std::unique_ptr<Intersector> inner) {
+      return std::make_unique<LyingIntersector>(std::move(inner), every_nearest_, every_occlusion_);
+    };
+  }
+
+ private:
+  std::uint64_t every_nearest_, every_occlusion_;
+};
+
 class VerifyRunTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -33,9 +47,8 @@ class VerifyRunTest : public ::testing::Test {
     arguments.push_back(path("a.ppm"));
     arguments.push_back(path("scene.ray"));
     ::testing::internal::CaptureStderr();
-    const int code = run_program(arguments, [&](const CompiledScene&, std::unique_ptr<Intersector> inner) {
-      return std::make_unique<LyingIntersector>(std::move(inner), every_nearest, every_occlusion);
-    });
+    LyingEngine engine(every_nearest, every_occlusion);
+    const int code = run_program(arguments, engine);
     err_ = ::testing::internal::GetCapturedStderr();
     return code;
   }

@@ -82,7 +82,7 @@ TEST(ClassReportTest, FramesAddUpAndMemoryIsReported) {
   const std::uint64_t one = queries(rendered.statistics());
   const std::atomic<bool> stop{false};
   rendered.picture.clear();
-  ASSERT_TRUE(rendered.renderer.render_frame(1, rendered.picture, stop, {}));
+  ASSERT_TRUE(rendered.renderer.render_frame({1, rendered.picture, stop}));
   const RenderStatistics& s = rendered.statistics();
   EXPECT_GT(queries(s), one);
   EXPECT_EQ(queries(s), s.shading.queries());

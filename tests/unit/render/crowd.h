@@ -60,7 +60,7 @@ struct Rendered {
         renderer(scene, settings, provider, options),
         picture(buffer(settings, layers)) {
     const std::atomic<bool> stop{false};
-    EXPECT_TRUE(renderer.render_frame(0, picture, stop, {}));
+    EXPECT_TRUE(renderer.render_frame({0, picture, stop}));
   }
   const RenderStatistics& statistics() const { return renderer.statistics(); }
   double sum_of(const std::string& layer) const {

@@ -59,7 +59,7 @@ std::vector<float> layers_of(Renderer& renderer, const RenderSettings& settings,
   buffer.layers = kLayers;
   FrameBuffer picture(buffer);
   const std::atomic<bool> stop{false};
-  EXPECT_TRUE(renderer.render_frame(frame, picture, stop, {}));
+  EXPECT_TRUE(renderer.render_frame({frame, picture, stop}));
   std::vector<float> out;
   for (int layer = 0; layer < static_cast<int>(kLayers.size()); ++layer) {
     for (std::int64_t y = 0; y < buffer.height; ++y) {

@@ -1,2 +1,2 @@
-# Rendering is tested from scene text.
+#Rendering is tested from scene text.
 target_link_libraries(render_test PRIVATE rayshade_lang)

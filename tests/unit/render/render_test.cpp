@@ -66,7 +66,7 @@ Picture render(const Scene& scene, const SettingsOverrides& overrides = {}, cons
   buffer.storage = PixelStorage::kFloat;
   FrameBuffer picture(buffer);
   const std::atomic<bool> stop{false};
-  EXPECT_TRUE(renderer.render_frame(frame, picture, stop, {}));
+  EXPECT_TRUE(renderer.render_frame({frame, picture, stop}));
   out.rgba.resize(static_cast<std::size_t>(buffer.width) * buffer.height * 4);
   for (std::int64_t y = 0; y < buffer.height; ++y) {
     picture.read_row(y, reinterpret_cast<std::uint8_t*>(out.rgba.data() + 4 * y * buffer.width));
@@ -161,7 +161,7 @@ TEST(RenderTest, FramesDoNotDependOnTheFramesBefore) {
   std::vector<float> previous;
   for (int frame = 0; frame < 3; ++frame) {
     picture.clear();
-    ASSERT_TRUE(renderer.render_frame(frame, picture, stop, {}));
+    ASSERT_TRUE(renderer.render_frame({frame, picture, stop}));
     std::vector<float> rgba(static_cast<std::size_t>(buffer.width) * buffer.height * 4);
     for (std::int64_t y = 0; y < buffer.height; ++y) {
       picture.read_row(y, reinterpret_cast<std::uint8_t*>(rgba.data() + 4 * y * buffer.width));
@@ -222,7 +222,7 @@ TEST(RenderTest, StoppingLeavesWholeBlocks) {
   buffer.height = settings.window_height();
   FrameBuffer picture(buffer);
   const std::atomic<bool> stop{true};
-  EXPECT_FALSE(renderer.render_frame(0, picture, stop, {}));
+  EXPECT_FALSE(renderer.render_frame({0, picture, stop}));
   EXPECT_EQ(picture.present() % 16, 0);
   EXPECT_LT(picture.present(), buffer.width * buffer.height);
 }

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: MIT
+#include "pafas/master.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "rayshade/cli/program.h"
+#include "rayshade/image/output_file.h"
+
+namespace pafas {
+
+using namespace rayshade;
+
+namespace {
+
+bool process_is_gone(std::int64_t process) {
+  return kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH;
+}
+
+}  // namespace
+
+Master::Master(Transport& transport, MasterOptions options)
+    : transport_(transport),
+      options_(std::move(options)),
+      ranks_(static_cast<std::size_t>(transport.size())),
+      report_(transport.size()) {
+  ranks_[0].phase = Phase::kWorking;
+}
+
+Master::~Master() { dismiss(); }
+
+void Master::begin(const EnginePlan& plan) {
+  renderer_ = &plan.renderer;
+  run_options_ = &plan.options;
+  threads_ = rendering_options(plan.options, options_.ranks_here).threads;
+  dedicated_ = plan.options.cluster.dedicated_master && !alone();
+  report_.width = plan.settings.window_width();
+  report_.height = plan.settings.window_height();
+  if (alone()) return;
+  package_ = files_.package();
+  report_.package_bytes = package_.size();
+  plan_ = {{}, options_.arguments, plan.scene_hash, plan.format, package_.size()};
+  planned_ = true;
+  for (const auto& [rank, hello] : std::exchange(early_, {})) greet(rank, hello);
+}
+
+// ---- messages
+
+void Master::serve() {
+  while (std::optional<Message> message = transport_.receive()) {
+    const int from = message->from;
+    if (from <= 0 || from >= transport_.size()) continue;
+    Rank& rank = ranks_[static_cast<std::size_t>(from)];
+    RankRow& row = report_.rows[static_cast<std::size_t>(from)];
+    rank.heard = seconds_now();
+    ++row.messages;
+    row.bytes += message->bytes.size();
+    if (rank.phase == Phase::kLost) {
+      rank.phase = rank.ready ? Phase::kWorking : Phase::kLoading;
+      row.outcome = "back";
+      fmt::print(stderr, "pafas: rank {} on {} is back\n", from, row.host);
+    }
+    try {
+      handle(*message);
+    } catch (const ArchiveError& error) {
+      lose(from, Phase::kFailed, fmt::format("sent rubbish: {}", error.what()));
+    }
+  }
+}
+
+void Master::handle(const Message& message) {
+  const int from = message.from;
+  Rank& rank = ranks_[static_cast<std::size_t>(from)];
+  RankRow& row = report_.rows[static_cast<std::size_t>(from)];
+  const auto note_clock = [&](double sent) {
+    // The quickest message tells best how the clocks differ.
+    const double offset = seconds_now() - sent;
+    row.clock_offset = row.has_clock ? std::min(row.clock_offset, offset) : offset;
+    row.has_clock = true;
+  };
+  switch (kind_of(message.bytes)) {
+    case Kind::kHello: {
+      const auto hello = unpack<Hello>(message.bytes);
+      row.host = hello.host;
+      row.process = hello.process;
+      if (planned_)
+        greet(from, hello);
+      else
+        early_.emplace_back(from, hello);
+      return;
+    }
+    case Kind::kPull:
+      send_pieces(from, unpack<Pull>(message.bytes));
+      return;
+    case Kind::kReady: {
+      const auto ready = unpack<Ready>(message.bytes);
+      rank.phase = Phase::kWorking;
+      rank.ready = rank.wants_work = true;
+      row.outcome = "working";
+      row.report.threads = ready.threads;
+      row.report.compile_seconds = ready.seconds;
+      return;
+    }
+    case Kind::kResults: {
+      auto results = unpack<Results>(message.bytes);
+      note_clock(results.sent);
+      rank.phase = Phase::kWorking;
+      take_results(from, std::move(results));
+      return;
+    }
+    case Kind::kAlive:
+      note_clock(unpack<Alive>(message.bytes).sent);
+      tell(from, Heard{});
+      return;
+    case Kind::kReport:
+      row.report = unpack<Report>(message.bytes).report;
+      row.reported = rank.reported = true;
+      row.outcome = "reported";
+      rank.phase = Phase::kGone;
+      return;
+    case Kind::kFailed:
+      lose(from, Phase::kFailed, unpack<Failed>(message.bytes).text);
+      return;
+    default:
+      throw ArchiveError("a message that only slaves get");
+  }
+}
+
+std::string Master::refusal_of(const Hello& hello) const {
+  if (hello.protocol != kProtocol || hello.version != options_.version)
+    return fmt::format("this is pafas {} (protocol {}), and rank 0 is pafas {} (protocol {})", hello.version,
+                       hello.protocol, options_.version, kProtocol);
+  return {};
+}
+
+void Master::greet(int rank, const Hello& hello) {
+  Rank& at = ranks_[static_cast<std::size_t>(rank)];
+  Plan plan = plan_;
+  plan.refusal = refusal_of(hello);
+  if (over_) {
+    tell(rank, Leave{report_.lost_ranks > 0});
+    return;
+  }
+  if (!plan.refusal.empty())
+    lose(rank, Phase::kFailed, plan.refusal);
+  else if (at.phase == Phase::kExpected)
+    at.phase = Phase::kLoading;
+  // Another container may have the same name and other numbers for its processes: then it is not there now.
+  at.watched = hello.host == RunReport::host_name() && !process_is_gone(hello.process);
+  tell(rank, plan);
+}
+
+void Master::send_pieces(int rank, const Pull& pull) {
+  const std::uint64_t pieces = (package_.size() + Piece::kBytes - 1) / Piece::kBytes;
+  if (pull.first > pieces) return;
+  const std::uint64_t end = std::min(pieces, pull.first + std::min<std::uint64_t>(pull.count, 1024));
+  for (std::uint64_t number = pull.first; number < end; ++number)
+    tell(rank, Piece{number, package_.substr(static_cast<std::size_t>(number * Piece::kBytes),
+                                             static_cast<std::size_t>(Piece::kBytes))});
+}
+
+void Master::lose(int number, Phase phase, const std::string& why) {
+  Rank& rank = ranks_[static_cast<std::size_t>(number)];
+  if (rank.phase == Phase::kGone) return;
+  RankRow& row = report_.rows[static_cast<std::size_t>(number)];
+  rank.phase = phase;
+  row.outcome = why;
+  ++report_.lost_ranks;
+  if (book_) book_->lost(number);
+  fmt::print(stderr, "pafas: rank {}{}: {}; its work goes to others\n", number,
+             row.host.empty() ? "" : " on " + row.host, why);
+}
+
+void Master::watch() {
+  const double now = seconds_now();
+  if (now - watched_ < .1) return;
+  watched_ = now;
+  for (std::size_t i = 1; i < ranks_.size(); ++i) {
+    const Rank& rank = ranks_[i];
+    if (rank.phase != Phase::kLoading && rank.phase != Phase::kWorking) continue;
+    if (rank.watched && process_is_gone(report_.rows[i].process))
+      lose(static_cast<int>(i), Phase::kLost, "its process has died");
+    else if (now - rank.heard > options_.timing.silence)
+      lose(static_cast<int>(i), Phase::kLost, fmt::format("not heard of for {:.0f} s", now - rank.heard));
+  }
+}
+
+// ---- a frame
+
+bool Master::render_frame(Renderer& renderer, const FrameJob& job) {
+  if (alone()) {
+    const bool complete = renderer.render_frame(job);
+    report_.rows[0].blocks = renderer.statistics().sampling.blocks;
+    return complete;
+  }
+  const double start = seconds_now();
+  FrameBuffer& picture = job.picture;
+  job_ = &job;
+  const ClusterOptions& cluster = run_options_->cluster;
+  WorkBookOptions options;
+  options.schedule = cluster.schedule;
+  options.starts = cluster.start;
+  options.granularity = cluster.granularity;
+  options.workers = transport_.size();
+  options.block_side = run_options_->block;
+  book_ = std::make_unique<WorkBook>(static_cast<int>(picture.width()), static_cast<int>(picture.height()),
+                                     options);
+  report_.schedule = book_->schedule_name();
+  for (std::int64_t i = 0; i < book_->count(); ++i) {
+    const Block block = book_->block(i);
+    if (picture.is_present(block.x, block.y, block.width, block.height)) book_->skip(i);
+  }
+  progress_ = {};
+  progress_.blocks = book_->missing();
+  progress_.pixels = picture.width() * picture.height();
+  progress_.pixels_before = picture.present();
+  report_.resumed_pixels += static_cast<std::uint64_t>(progress_.pixels_before);
+  const PixelStatistics before = picture.statistics();
+
+  feed_ = std::make_unique<QueueFeed>();
+  std::unique_ptr<FrameCrew> crew;
+  if (!dedicated_ && progress_.blocks > 0)
+    crew = renderer.start_frame(job.frame, format_of(picture), *feed_, threads_);
+  double told = 0;
+  while (!book_->complete() && !job.stop) {
+    serve();
+    take_own_results();
+    watch();
+    give_work();
+    if (crew && crew->wait(0)) break;  // it ends by itself only if it cannot go on
+    if (const double now = seconds_now(); now - told > .1) {
+      told = now;
+      if (job.progress) job.progress(progress());
+    }
+    feed_->wait_for_news(5e-4);
+  }
+  feed_->close();
+  if (crew) {
+    renderer.finish_frame(*crew);
+    take_own_results();
+    report_.rows[0].report.wait_seconds += feed_->waited();
+  }
+  if (job.stop)  // what others have done by now is not thrown away
+    for (const double until = seconds_now() + options_.timing.last_results;
+         seconds_now() < until && !book_->complete() && book_->leased() > 0;) {
+      serve();
+      feed_->wait_for_news(1e-3);
+    }
+  if (job.progress) job.progress(progress());
+  book_.reset();
+  job_ = nullptr;
+  renderer.count_frame(picture, before, seconds_now() - start);
+  return picture.complete();
+}
+
+FrameProgress Master::progress() {
+  const FrameBuffer& picture = job_->picture;
+  while (progress_.rows_done < picture.height() && picture.row_complete(progress_.rows_done))
+    ++progress_.rows_done;
+  progress_.pixels_done = picture.present();
+  return progress_;
+}
+
+void Master::take_results(int rank, Results results) {
+  for (Result& result : results.results) take_result(rank, results.frame, std::move(result));
+  if (results.wants_work) ranks_[static_cast<std::size_t>(rank)].wants_work = true;
+}
+
+bool Master::take_result(int rank, int frame, Result result) {
+  RankRow& row = report_.rows[static_cast<std::size_t>(rank)];
+  const double offset = rank == 0 ? 0 : row.clock_offset;
+  BlockSpan span{rank, frame, {}, result.begin + offset, result.end + offset, false};
+  if (book_ && frame == job_->frame && result.number >= 0 && result.number < book_->count()) {
+    span.block = book_->block(result.number);
+    const EncodedBlock& pixels = result.pixels;
+    if (pixels.x != span.block.x || pixels.y != span.block.y || pixels.width != span.block.width ||
+        pixels.height != span.block.height)
+      throw ArchiveError("a result of another block than it says");
+    span.counted = book_->finished(result.number, rank, result.cpu_seconds, seconds_now());
+    if (span.counted) {
+      if (job_->keep) job_->keep(pixels);
+      job_->picture.put(pixels);
+      ++progress_.blocks_done;
+      ++row.blocks;
+      row.render_seconds += result.cpu_seconds;
+    }
+  }
+  report_.repeated_blocks += !span.counted;
+  report_.spans.push_back(span);
+  return span.counted;
+}
+
+void Master::take_own_results() {
+  for (QueueFeed::Finished& f : feed_->take_finished()) {
+    ++report_.rows[0].report.blocks;
+    take_result(0, job_->frame, {f.block.number, f.begin, f.end, f.cost.seconds, std::move(f.pixels)});
+  }
+}
+
+void Master::give_work() {
+  if (!dedicated_ && feed_->state().queued == 0) feed_->add(book_->take(0, threads_, seconds_now()));
+  for (std::size_t i = 1; i < ranks_.size(); ++i) {
+    Rank& rank = ranks_[i];
+    if (rank.phase != Phase::kWorking || !rank.wants_work) continue;
+    const int threads = static_cast<int>(report_.rows[i].report.threads);
+    std::vector<Block> blocks = book_->take(static_cast<int>(i), threads, seconds_now());
+    if (blocks.empty()) continue;
+    rank.wants_work = false;
+    tell(static_cast<int>(i), Work{job_->frame, std::move(blocks)});
+  }
+}
+
+// ---- the end
+
+void Master::dismiss() {
+  if (over_) return;
+  over_ = true;
+  if (report_.lost_ranks > 0) transport_.note_losses();
+  for (int i = 1; i < transport_.size(); ++i) {
+    const Phase phase = ranks_[static_cast<std::size_t>(i)].phase;
+    if (phase != Phase::kFailed && phase != Phase::kGone) tell(i, Leave{report_.lost_ranks > 0});
+  }
+}
+
+void Master::end(RenderStatistics& statistics) {
+  RankRow& own = report_.rows[0];
+  own.host = report_.host_name();
+  own.process = getpid();
+  own.outcome = "reported";
+  own.reported = true;
+  own.report.statistics = statistics;
+  own.report.threads = dedicated_ ? 0 : static_cast<std::uint32_t>(threads_);
+  own.report.cpu_seconds = statistics.cpu_seconds;
+  own.report.compile_seconds = statistics.compile_seconds;
+  dismiss();
+  const auto awaited = [&] {
+    return std::any_of(ranks_.begin() + 1, ranks_.end(), [](const Rank& rank) {
+      return rank.phase == Phase::kWorking || rank.phase == Phase::kLoading;
+    });
+  };
+  for (const double until = seconds_now() + options_.timing.reports; awaited() && seconds_now() < until;) {
+    serve();
+    std::this_thread::sleep_for(std::chrono::microseconds(500));
+  }
+  for (std::size_t i = 1; i < ranks_.size(); ++i) {
+    RankRow& row = report_.rows[i];
+    if (row.reported)
+      add_counts(row.report.statistics, statistics);
+    else if (ranks_[i].phase == Phase::kExpected)
+      row.outcome = "never heard of";
+    else if (ranks_[i].phase == Phase::kWorking || ranks_[i].phase == Phase::kLoading)
+      row.outcome = "left without a report";
+  }
+  own.report.peak_memory = 0;  // that of the process is in the summary
+  const ClusterOptions& cluster = run_options_->cluster;
+  if (cluster.tile_map && !report_.spans.empty())
+    report_.write_tile_map(*cluster.tile_map, report_.spans.back().frame);
+  if (cluster.timeline) {
+    OutputFile file(*cluster.timeline);
+    file.write(report_.timeline());
+    file.commit();
+  }
+}
+
+}  // namespace pafas

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// Options that only the program for a cluster has.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace rayshade {
+
+struct ClusterOptions {
+  std::string schedule = "auto";      ///< name of a schedule (rayshade/schedule)
+  std::string start = "two-circles";  ///< where the blocks schedule starts
+  int granularity = 0;                ///< blocks per message at most; 0: chosen
+  bool dedicated_master = false;      ///< rank 0 renders nothing
+  int simulate = 0;                   ///< ranks to simulate; 0: render
+  int estimate = 0;                   ///< ranks to predict time and memory for; 0: render
+  std::optional<std::string> costs;   ///< file of block costs to simulate with
+  std::optional<std::string> tile_map, timeline;
+};
+
+}  // namespace rayshade

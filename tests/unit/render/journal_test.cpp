@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+// What was recorded comes back whatever happens to the file: cut at any byte, any bit flipped.
+#include "rayshade/render/journal.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+namespace rayshade {
+namespace {
+
+namespace fs = std::filesystem;
+
+FrameBufferOptions small(int width, int height) {
+  FrameBufferOptions out;
+  out.width = width;
+  out.height = height;
+  return out;
+}
+
+/// A block whose pixels tell where they are.
+EncodedBlock block_at(std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height) {
+  EncodedBlock out;
+  out.x = x;
+  out.y = y;
+  out.width = width;
+  out.height = height;
+  for (std::int64_t v = y; v < y + height; ++v)
+    for (std::int64_t u = x; u < x + width; ++u)
+      for (const std::int64_t byte : {u, v, u ^ v, std::int64_t{255}})
+        out.pixels.push_back(static_cast<std::uint8_t>(byte));
+  return out;
+}
+
+class JournalTest : public ::testing::Test {
+ protected:
+  JournalTest() {
+    std::string name = (fs::temp_directory_path() / "journal-test-XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("mkdtemp");
+    folder = name;
+    path = folder / "a.png.journal";
+  }
+  ~JournalTest() override { fs::remove_all(folder); }
+  std::string bytes() const {
+    std::ifstream in(path, std::ios::binary);
+    std::ostringstream out;
+    out << in.rdbuf();
+    return out.str();
+  }
+  /// In place: file systems flush a file that is truncated and written anew.
+  void set(const std::string& content) const {
+    fs::resize_file(path, content.size());
+    std::fstream(path, std::ios::binary | std::ios::in | std::ios::out) << content;
+  }
+  void expect_right(const FrameBuffer& picture) const {
+    for (int y = 0; y < picture.height(); ++y) {
+      for (int x = 0; x < picture.width(); ++x) {
+        if (!picture.is_present(x, y)) continue;
+        ASSERT_EQ(picture.row(y)[4 * x], x);
+        ASSERT_EQ(picture.row(y)[4 * x + 1], y);
+      }
+    }
+  }
+  /// Four blocks of 4 x 4 in a picture of 8 x 8.
+  void write_four() const {
+    FrameBuffer picture(small(8, 8));
+    Journal journal(path, identity, picture);
+    journal.begin();
+    for (const int y : {0, 4})
+      for (const int x : {0, 4}) journal.record(0, picture, block_at(x, y, 4, 4));
+    EXPECT_EQ(journal.failure(), "");
+  }
+
+  fs::path folder, path;
+  JournalIdentity identity{"abc", "screen 8 8\nsphere 1 0 0 0\n", {{"samples", "2"}, {"seed", "0"}}};
+};
+
+TEST_F(JournalTest, GoesOnFromWhatWasRecorded) {
+  write_four();
+  FrameBuffer picture(small(8, 8));
+  Journal journal(path, identity, picture);
+  EXPECT_EQ(journal.found(), Journal::Found::kSame);
+  journal.go_on();
+  EXPECT_EQ(journal.load(1, picture), 0);
+  EXPECT_EQ(journal.load(0, picture), 4);
+  EXPECT_TRUE(picture.complete());
+  expect_right(picture);
+  journal.remove();
+  EXPECT_FALSE(fs::exists(path));
+}
+
+TEST_F(JournalTest, CutAtAnyByteAllWholeBlocksAreUsedAndItGoesOn) {
+  write_four();
+  const std::string whole = bytes();
+  std::int64_t most = 0;
+  for (std::size_t size = 0; size <= whole.size(); ++size) {
+    set(whole.substr(0, size));
+    FrameBuffer picture(small(8, 8));
+    {
+      Journal journal(path, identity, picture);
+      if (journal.found() != Journal::Found::kSame) {
+        EXPECT_EQ(journal.found(), size == 0 ? Journal::Found::kNothing : Journal::Found::kUnusable);
+        EXPECT_EQ(most, 0);
+        journal.begin();
+      } else {
+        journal.go_on();
+      }
+      const std::int64_t blocks = journal.load(0, picture);
+      EXPECT_GE(blocks, most);
+      most = blocks;
+      EXPECT_EQ(picture.present(), 16 * blocks);
+      expect_right(picture);
+      for (const int y : {0, 4})
+        for (const int x : {0, 4}) journal.record(0, picture, block_at(x, y, 4, 4));
+    }
+    FrameBuffer again(small(8, 8));
+    Journal journal(path, identity, again);
+    ASSERT_EQ(journal.found(), Journal::Found::kSame);
+    EXPECT_EQ(journal.damaged_bytes(), 0U);
+    journal.load(0, again);
+    EXPECT_TRUE(again.complete());
+    expect_right(again);
+    EXPECT_EQ(fs::file_size(path), whole.size());  // every pixel once
+  }
+  EXPECT_EQ(most, 4);
+}
+
+TEST_F(JournalTest, AFlippedBitCostsAtMostTheBlockItIsIn) {
+  write_four();
+  std::string whole = bytes();
+  const std::size_t first = open_record(whole)->size;
+  FrameBuffer picture(small(8, 8));
+  for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+    whole[bit / 8] = static_cast<char>(whole[bit / 8] ^ 1 << bit % 8);
+    set(whole);
+    picture.clear();
+    Journal journal(path, identity, picture);
+    if (bit / 8 < first) {
+      EXPECT_EQ(journal.found(), Journal::Found::kUnusable);
+    } else {
+      EXPECT_EQ(journal.found(), Journal::Found::kSame);
+      EXPECT_EQ(journal.load(0, picture), 3);
+      EXPECT_GT(journal.damaged_bytes(), 0U);
+      expect_right(picture);
+    }
+    whole[bit / 8] = static_cast<char>(whole[bit / 8] ^ 1 << bit % 8);
+  }
+}
+
+TEST_F(JournalTest, AnyRectanglesAreRecordedPixelByPixelOnce) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  FrameBuffer picture(small(40, 30));
+  {
+    Journal journal(path, identity, picture);
+    journal.begin();
+    for (int i = 0; i < 200; ++i) {
+      const int x = static_cast<int>(random() % 40), y = static_cast<int>(random() % 30);
+      const EncodedBlock block = block_at(x, y, 1 + random() % static_cast<unsigned>(40 - x),
+                                          1 + random() % static_cast<unsigned>(30 - y));
+      journal.record(0, picture, block);
+      picture.put(block);
+    }
+  }
+  std::uint64_t recorded = 0;
+  const std::string content = bytes();
+  for (std::string_view rest = content; const auto record = open_record(rest);) {
+    if (record->kind == RecordKind::kBlock) recorded += record->payload.size() - 48;
+    rest.remove_prefix(record->size);
+  }
+  EXPECT_EQ(recorded, 4U * static_cast<unsigned>(picture.present()));
+  FrameBuffer back(small(40, 30));
+  Journal journal(path, identity, back);
+  journal.load(0, back);
+  EXPECT_EQ(back.present(), picture.present());
+  expect_right(back);
+}
+
+TEST_F(JournalTest, ASecondOneOnTheSameFileIsRefused) {
+  FrameBuffer picture(small(8, 8));
+  const Journal journal(path, identity, picture);
+  EXPECT_THROW(Journal(path, identity, picture), JournalError);
+}
+
+TEST_F(JournalTest, TellsWhatChanged) {
+  const auto changed = [&](auto change) {
+    JournalIdentity now = identity;
+    change(now);
+    return first_difference(identity, now);
+  };
+  EXPECT_EQ(first_difference(identity, identity), "");
+  EXPECT_EQ(changed([](auto& now) { now.values[0].second = "4"; }), "samples was 2, is now 4");
+  EXPECT_EQ(changed([](auto& now) { now.values.pop_back(); }), "seed was 0, is now not set");
+  EXPECT_EQ(changed([](auto& now) {
+              now.scene_hash = "x";
+              now.scene_text = "screen 8 8\nsphere 2 0 0 0\n";
+            }),
+            "the scene has changed: 'sphere 1 0 0 0' is now 'sphere 2 0 0 0'");
+}
+
+TEST_F(JournalTest, BlocksOfFinishedFramesAreDropped) {
+  FrameBuffer picture(small(512, 512));
+  {
+    Journal journal(path, identity, picture);
+    journal.begin();
+    for (int frame = 0; frame < 5; ++frame) {
+      picture.clear();
+      journal.record(frame, picture, block_at(0, 0, 512, 512));
+      if (frame < 4) journal.finish_frame(frame, 1000);
+      EXPECT_LT(fs::file_size(path), 3U << 20);
+    }
+    EXPECT_THROW(Journal(path, identity, picture), JournalError);  // the new file is locked too
+  }
+  EXPECT_FALSE(fs::exists(path.string() + ".new"));
+  picture.clear();
+  Journal journal(path, identity, picture);
+  ASSERT_EQ(journal.found(), Journal::Found::kSame);
+  EXPECT_EQ(journal.finished(3), 1000U);
+  EXPECT_FALSE(journal.finished(4));
+  EXPECT_EQ(journal.load(3, picture), 0);
+  EXPECT_EQ(journal.load(4, picture), 1);
+}
+
+}  // namespace
+}  // namespace rayshade
