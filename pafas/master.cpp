@@ -234,7 +234,6 @@ bool Master::render_frame(Renderer& renderer, const FrameJob& job) {
   progress_.pixels = picture.width() * picture.height();
   progress_.pixels_before = picture.present();
   report_.resumed_pixels += static_cast<std::uint64_t>(progress_.pixels_before);
-  const PixelStatistics before = picture.statistics();
 
   feed_ = std::make_unique<QueueFeed>();
   std::unique_ptr<FrameCrew> crew;
@@ -268,7 +267,7 @@ bool Master::render_frame(Renderer& renderer, const FrameJob& job) {
   if (job.progress) job.progress(progress());
   book_.reset();
   job_ = nullptr;
-  renderer.count_frame(picture, before, seconds_now() - start);
+  renderer.count_frame(picture, seconds_now() - start);
   return picture.complete();
 }
 

@@ -221,6 +221,7 @@ class Run {
                                   files.hashes(), RAYSHADE_VERSION);
         },
         picture);
+    output.remove_leftovers();
     engine_.begin({options_, settings_, renderer, format, run_.scene_hash});
     Progress progress(report_.get(), {!chatty(), report_.get() == stderr && isatty(STDERR_FILENO) != 0,
                                       options_.report_frequency.value_or(0), settings_.min_y});
@@ -253,14 +254,17 @@ class Run {
           write_text(output.file_name(*options_.fas_dump, frame), tree_drawing(renderer, picture, frame));
       } else {
         kept.save();
-        const std::string partial = output.write_partial(picture, frame);
-        complain(engine_, partial.empty()
-                              ? "stopped; no partial picture is kept on standard output"
-                              : fmt::format("stopped; the partial picture is {}{}", partial, kept.advice()));
+        const std::string partial = output.write_stopped(picture, frame);
+        complain(engine_, fmt::format("stopped at {}; {}{}", progress_text(picture, i),
+                                      partial.empty() ? "no partial picture is kept on standard output"
+                                                      : "the partial picture is " + partial,
+                                      kept.advice()));
       }
     }
-    if (complete || renderer.statistics().frames > 0) output.finish();
-    if (complete) kept.finish();
+    if (complete) {
+      output.finish();
+      kept.finish();
+    }
     run_.blocks_resumed = kept.blocks_resumed();
     run_.pixels_resumed = kept.pixels_resumed();
     run_.frames_resumed = kept.frames_resumed();
@@ -273,6 +277,14 @@ class Run {
     const bool differs = statistics.verify.differing > 0;
     report(statistics, differs ? "differs" : complete ? "complete" : "stopped");
     return verified(statistics, complete ? kComplete : kStopped);
+  }
+
+  /// How far the i-th frame is, rounded down: "43 %" or "43 % of frame 7 (3 of 10)".
+  std::string progress_text(const FrameBuffer& picture, int i) const {
+    std::string out = fmt::format("{} %", 100 * picture.present() / (picture.width() * picture.height()));
+    if (settings_.frames > 1)
+      out += fmt::format(" of frame {} ({} of {})", settings_.first_frame + i, i + 1, settings_.frames);
+    return out;
   }
 
   int estimate() {
