@@ -136,10 +136,10 @@ bool CompiledScene::prepare_frame(const Interval& new_shutter, double new_frame,
 
 void CompiledScene::rebuild(bool hierarchies) {
   place_animated();
-  if (has_csg) set_tolerances();
   for (const std::uint32_t group : bottom_up) rebuild_group(groups[group], hierarchies);
   scale = groups[0].bounds.largest_extent();
   if (!(scale > 0) || !std::isfinite(scale)) scale = 1;
+  if (has_csg) set_tolerances();
   measure_extents();
   count_bytes();
 }
@@ -171,32 +171,49 @@ void CompiledScene::place_animated() {
   }
 }
 
-/// EPS of objects.md 7.2, relative for objects smaller than one unit in their own space.
+/// EPS of objects.md 7.2, relative for objects smaller than one unit in their own space. Planes have no size:
+/// among bounded things they take that of these, alone that of the world.
 void CompiledScene::set_tolerances() {
-  // Boxes of operands and of shared groups, with animated parts as they are at the start of the frame.
-  std::vector<Bounds3> resting(groups.size());
+  // Boxes of operands and of shared groups, with animated parts as they are at the start of the frame; and of
+  // what is bounded in them.
+  std::vector<Bounds3> resting(groups.size()), bounded(groups.size());
+  const auto result = [&](const Csg& csg) {
+    return csg_rule(csg.operation, resting[csg.left], groups[csg.left].solid, resting[csg.right],
+                    groups[csg.right].solid);
+  };
+  const auto bounded_result = [&](const Csg& csg) {
+    const Bounds3 box = result(csg);
+    return box.unbounded() ? join(bounded[csg.left], bounded[csg.right]) : box;
+  };
   for (const std::uint32_t index : bottom_up) {
     if (index == 0) continue;
     const Group& group = groups[index];
     for (LeafId id = group.first; id < group.first + group.count; ++id) {
       const Leaf& leaf = leaves[id];
-      Bounds3 box;
+      Bounds3 box, part;
       if (leaf.kind == LeafKind::kCsg) {
-        const Csg& csg = csgs[leaf.shape];
-        box = csg_rule(csg.operation, resting[csg.left], groups[csg.left].solid, resting[csg.right],
-                       groups[csg.right].solid);
+        box = result(csgs[leaf.shape]);
+        part = bounded_result(csgs[leaf.shape]);
       } else {
-        box = leaf.kind == LeafKind::kInstance ? resting[instances[leaf.shape].group] : shape_bounds(leaf);
-        if (leaf.placement != kNone) box = transformed(box, placements[leaf.placement].map.forward);
+        const bool shared = leaf.kind == LeafKind::kInstance;
+        box = shared ? resting[instances[leaf.shape].group] : shape_bounds(leaf);
+        part = shared ? bounded[instances[leaf.shape].group] : box.unbounded() ? Bounds3{} : box;
+        if (leaf.placement != kNone) {
+          box = transformed(box, placements[leaf.placement].map.forward);
+          part = transformed(part, placements[leaf.placement].map.forward);
+        }
       }
       if (!box.empty()) resting[index].add(box);
+      if (!part.empty()) bounded[index].add(part);
     }
   }
   for (Csg& csg : csgs) {
-    Bounds3 box = csg_rule(csg.operation, resting[csg.left], groups[csg.left].solid, resting[csg.right],
-                           groups[csg.right].solid);
+    const bool planes_alone = result(csg).unbounded() && bounded_result(csg).empty();
+    Bounds3 box = bounded_result(csg);
     if (csg.placement != kNone && !box.empty()) box = transformed(box, placements[csg.placement].map.inverse);
-    const double extent = box.largest_extent();
+    double extent = box.largest_extent();
+    if (planes_alone)
+      extent = scale * (csg.placement == kNone ? 1 : norm(placements[csg.placement].map.inverse));
     csg.tolerance = kEpsilon * (extent > 0 ? std::min(1.0, extent) : 1.0);
   }
 }

@@ -71,10 +71,11 @@ inline int dominant_axis(const Vec3& a) {
   return m.y > m.z ? 1 : 2;
 }
 
-/// Two unit axes perpendicular to `n` (the CoordSys of textures.md 0 and shading.md 4.2).
+/// Two unit axes perpendicular to `n` of any length (the CoordSys of textures.md 0 and shading.md 4.2). What
+/// counts as along z is a question of direction: vectors toward a light are as short as the scene is small.
 inline void coordinate_system(const Vec3& n, Vec3& u, Vec3& w) {
   u = {-n.y, n.x, 0};
-  if (length(u) < kEpsilon) u = {n.z, 0, -n.x};
+  if (length(u) < kEpsilon * length(n)) u = {n.z, 0, -n.x};
   u = normalize(u);
   w = normalize(cross(n, u));
 }

@@ -51,9 +51,11 @@ class Box {
     return true;
   }
   SurfacePoint surface_point(const Ray& ray, const ShapeHit& hit) const;
-  /// By position: the point at the ray's lower limit is outside the closed box.
-  bool entering(const Ray& ray, double lo, const ShapeHit& /*hit*/) const {
-    return !bounds().contains(ray.at(lo));
+  /// By position: the point at the ray's lower limit is outside the closed box, so that the face hit is one
+  /// that the ray goes in through. The face says so whatever rounding did to that point.
+  bool entering(const Ray& ray, double /*lo*/, const ShapeHit& hit) const {
+    const bool high_face = (hit.part & 1) != 0;
+    return high_face == (ray.direction[static_cast<int>(hit.part / 2)] < 0);
   }
   /// None (objects.md 3).
   TextureCoordinates texture_coordinates(const Vec3& /*x*/, const Vec3& /*facing_normal*/,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "rayshade/geometry/shapes/disc.h"
 
+#include <algorithm>
+
 #include "rayshade/geometry/shapes/frame.h"
 
 namespace rayshade {
@@ -14,7 +16,8 @@ TextureCoordinates Disc::texture_coordinates(const Vec3& x, const Vec3& facing_n
                                              const ShapeHit& /*hit*/) const {
   const Vec3 from_center = x - center_;
   const double square = length_squared(from_center);
-  if (square < kEpsilon) return {};
+  // The original's 1e-5 is for discs of about one unit; smaller ones would lose their pattern to it.
+  if (square < kEpsilon * std::min(1.0, radius_ * radius_)) return {};
   const double distance = std::sqrt(square);
   const double cosine = x.x / distance;
   TextureCoordinates out;

@@ -388,6 +388,53 @@ TEST(Csg, AnyScaleAndPlace) {
   }
 }
 
+/// Whatever the distance from the origin: a ray that begins just behind the entry of one ball still knows
+/// that it is within it, so that the next hit is where it leaves the union of the two.
+TEST(Csg, InsideIsKnownFarFromTheOrigin) {
+  Dice dice(6);
+  for (const double scale : {1e-3, 1.0, 1e8}) {
+    const Vec3 away = 1e6 * scale * Vec3{1, -.7, .4};
+    SceneBuilder b;
+    b.show(b.unite({b.sphere(.3 * scale, away), b.sphere(.3 * scale, away + scale * Vec3{.3, 0, 0})}));
+    const auto scene = b.compile();
+    const auto intersector = make_hierarchy(*scene);
+    TraceScratch scratch;
+    for (int i = 0; i < 200; ++i) {
+      const double y = dice.uniform(-.2, .2), z = dice.uniform(-.2, .2);
+      const Ray ray{away + scale * Vec3{-2, y, z}, normalize(Vec3{1, dice.uniform(-.01, .01), .003})};
+      const NearestAnswer in = test::nearest(*intersector, ray, scratch, 0);
+      ASSERT_TRUE(in.found);
+      const NearestAnswer out =
+          test::nearest(*intersector, ray, scratch, std::nextafter(in.hit.t(), kInfinity));
+      ASSERT_TRUE(out.found);
+      EXPECT_EQ(in.hit.flag, EnterFlag::kEntering);
+      EXPECT_EQ(out.hit.flag, EnterFlag::kLeaving);
+      EXPECT_GT(out.hit.t() - in.hit.t(), .5 * scale);
+    }
+  }
+}
+
+/// Planes have no size of their own: their tolerance is that of the other operand, or of the world.
+TEST(Csg, TolerancesBesidePlanesFollowTheScene) {
+  for (const double scale : {1e-6, 1e-3, 1.0}) {
+    SceneBuilder b;
+    b.show(b.difference({b.plane({0, 0, 0}, {0, 0, 1}), b.sphere(scale, {0, 0, 0})}));
+    b.show(b.intersect({b.plane({0, 0, 5 * scale}, {0, 0, 1}), b.plane({2 * scale, 0, 0}, {-1, 0, .2})}));
+    const auto scene = b.compile();
+    const auto intersector = make_hierarchy(*scene);
+    TraceScratch scratch;
+    // The plane is crossed within the ball and not again: a hole (objects.md 7.5, 7.10).
+    EXPECT_FALSE(test::nearest(*intersector, {{0, 0, 3 * scale}, {0, 0, -1}}, scratch, 0).found) << scale;
+    const Ray beside{{-3 * scale, 0, 3 * scale}, {0, 0, -1}};
+    EXPECT_NEAR(test::nearest(*intersector, beside, scratch, 0).hit.t() / scale, 3, 1e-9) << scale;
+    // Through the slanted plane at z = 10 into its half space, and then into the other's.
+    const NearestAnswer wedge =
+        test::nearest(*intersector, {{4 * scale, 0, 12 * scale}, {0, 0, -1}}, scratch, 0);
+    ASSERT_TRUE(wedge.found);
+    EXPECT_NEAR(wedge.hit.t() / scale, 7, 1e-9) << scale;
+  }
+}
+
 /// Inside an instance, and an instance inside: the enter test sees the ray in the space of the primitive.
 TEST(Csg, ThroughInstances) {
   SceneBuilder b;

@@ -242,6 +242,13 @@ TEST(ShapesDisc, SurfaceCoordinatesAreFromAbsolutePositions) {
   EXPECT_NEAR(moved.texture_coordinates({5.5, -3, 0}, up, {}).v, 0.5, 1e-15);
 }
 
+TEST(ShapesDisc, SmallDiscsKeepTheirSurfaceCoordinates) {
+  const Disc disc(shape::Disc{1e-6, {0, 0, 0}, {0, 0, 1}});
+  const TextureCoordinates at = disc.texture_coordinates({0, -5e-7, 0}, {0, 0, 1}, {});
+  EXPECT_NEAR(at.u, 0.75, 1e-15);
+  EXPECT_NEAR(at.v, 0.5, 1e-15);
+}
+
 TEST(ShapesTriangle, WeightsBelongToTheirVertices) {
   const Vec3 p[3] = {{1, 0, 0}, {4, 1, 2}, {0, 3, 1}};
   const Triangle triangle(shape::Triangle{{p[0], p[1], p[2]}});

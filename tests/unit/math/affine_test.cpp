@@ -96,5 +96,19 @@ TEST(VecTest, NormalizeWorksAtAnySize) {
   EXPECT_EQ(normalize({0, 0, 0}), (Vec3{0, 0, 0}));
 }
 
+TEST(VecTest, CoordinateSystemIsAQuestionOfDirectionOnly) {
+  const Vec3 direction{1e-4, -2e-4, 1};
+  Vec3 u, w;
+  coordinate_system(direction, u, w);
+  for (const double size : {0x1p-30, 0x1p-10, 0x1p30}) {
+    Vec3 a, b;
+    coordinate_system(size * direction, a, b);
+    EXPECT_EQ(a, u) << size;
+    EXPECT_EQ(b, w) << size;
+  }
+  coordinate_system({0, 1e-6, -1}, u, w);  // along z: the other pair
+  EXPECT_EQ(u, (Vec3{-1, 0, 0}));
+}
+
 }  // namespace
 }  // namespace rayshade
