@@ -17,7 +17,7 @@ namespace fas {
 /// Whether the rays of a class go through its tree or through the hierarchy alone. A tree is started where
 /// what it may save of the rays still to come is worth more than to make it for all primitives. Of some
 /// groups of rays one half then goes through the hierarchy, both timed: rays side by side cost alike. The
-/// tree is left alone, for three times as many rays as have come by then, when the rays still to come would
+/// tree is left alone, for as many rays as have come by then, when the rays still to come would
 /// cost more through it than through the hierarchy. What has been made by then is paid for either way; what
 /// will be made is expected to grow with the square root of the rays.
 class Choice {
@@ -78,7 +78,10 @@ class Choice {
       add(tree_ns_, static_cast<std::uint64_t>(tree - building_now));
       add(hierarchy_ns_, static_cast<std::uint64_t>(hierarchy));
     }
-    const double making = making_per_ray();
+    const auto through_tree = static_cast<double>(all_tree_rays_.load(std::memory_order_relaxed));
+    // In the beginning every group comes to new places, and what they take to be made tells too much.
+    const bool early = through_tree < kEarly * expected_;
+    const double making = early ? 0 : making_per_ray();
     if (making < 0 || tried < kTrial) return;
     const std::uint64_t quiet = compared_.load(std::memory_order_relaxed);
     const double ratio = quiet >= kTrial ? share(tree_ns_, hierarchy_ns_) : kGuess;
@@ -116,7 +119,7 @@ class Choice {
   }
   void leave() {
     const std::uint64_t seen = seen_.load(std::memory_order_relaxed);
-    again_.store(seen + std::max<std::uint64_t>(kPause, 3 * seen), std::memory_order_relaxed);
+    again_.store(seen + std::max<std::uint64_t>(kPause, seen), std::memory_order_relaxed);
     for (std::atomic<std::uint64_t>* sum : {&compared_, &tried_, &tree_ns_, &hierarchy_ns_, &tree_rays_,
                                             &building_, &all_building_, &all_tree_rays_})
       sum->store(0, std::memory_order_relaxed);
@@ -128,6 +131,8 @@ class Choice {
   static constexpr std::uint64_t kTrial = 1024;
   /// Rays through the tree over which the cost of building is averaged.
   static constexpr std::uint64_t kWindow = 4096;
+  /// Share of the expected rays before which what it takes to make nodes is not judged.
+  static constexpr double kEarly = 1.0 / 32;
   /// The shortest time, in rays, that a tree is left alone.
   static constexpr std::uint64_t kPause = 1 << 16;
   /// Time through a tree by that through the hierarchy, as long as nothing better is known.
