@@ -223,7 +223,7 @@ TEST(AcneTest, RaysLeaveTheirSurface) { run("acne-short", {1e-6, 1e-3, 1, 1e6}, 
 
 TEST(AcneTest, DISABLED_RaysLeaveTheirSurfaceLong) {
   run("acne", {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1, 10, 1e2, 1e3, 1e4, 1e5, 1e6},
-      {0, 1, 10, 1e3, 1e4, 1e5, 1e6}, 20000);
+      {0, 1, 10, 1e3, 1e4, 1e5, 1e6}, static_cast<int>(scaled_count(20000)));
 }
 
 }  // namespace
