@@ -117,7 +117,7 @@ lint: lint-packages ## a second compiler, clang-format and clang-tidy
 	cmake -S . -B build-lint -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release \
 	  -DRAYSHADE_TESTS=ON -DRAYSHADE_BENCH=ON
 	cmake --build build-lint -j $(JOBS)
-	run-clang-tidy -p build-lint -quiet -j $(JOBS) '$(CURDIR)/(fas|rayshade|scenes|tests|bench)/.*'
+	run-clang-tidy -p build-lint -quiet -j $(JOBS) '$(CURDIR)/(fas|rayshade|pafas|scenes|tests|bench)/.*'
 
 format: lint-packages ## format all sources
 	clang-format -i $$(git ls-files '*.cpp' '*.h')

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // usage: fas_bench [--samples N] [--repeat N] [--size N] SCENE...
 //
-// Records the rays of each scene and replays them through adaptive subdivision, through the hierarchy alone,
+// Records the rays of each scene and replays them through adaptive subdivision, through its trees whatever
+// they cost (with no choice between trees and hierarchy), through the hierarchy alone,
 // and through Embree's single rays (fast and robust) and 16-wide packets, in turn within one run, on one
 // thread and in its processor time. Every repetition starts without trees, and building is part of the time.
 // Prints nanoseconds per ray of each class and ratios; wrong answers of ours end the run.
@@ -38,7 +39,8 @@ double now() {
 }
 
 enum Class { kEye, kShadow, kSecondary, kClasses };
-enum Way { kFas, kHierarchy, kFast, kRobust, kWays };
+enum Way { kFas, kTrees, kHierarchy, kFast, kRobust, kWays };
+constexpr const char* kNames[kWays] = {"fas", "trees", "hierarchy", "embree", "robust"};
 
 struct Times {
   double rays[kClasses] = {};
@@ -181,9 +183,13 @@ class Contest {
  public:
   Contest(const CompiledScene& scene, const FasOptions& options, int repeat, const char* name)
       : name_(name), fast_(scene, false), robust_(scene, true), repetitions_(repeat) {
+    FasOptions always = options;
+    always.choose = false;
     for (Repetition& repetition : repetitions_) {
       repetition.by_class = make_fas(scene, options);
       repetition.mixed = make_fas(scene, options);
+      repetition.always_by_class = make_fas(scene, always);
+      repetition.always_mixed = make_fas(scene, always);
     }
     hierarchy_ = make_hierarchy(scene);
   }
@@ -221,19 +227,21 @@ class Contest {
 
  private:
   struct Repetition {
-    std::unique_ptr<Intersector> by_class, mixed;  ///< trees of their own: both start without any
+    /// Trees of their own: all start without any.
+    std::unique_ptr<Intersector> by_class, mixed, always_by_class, always_mixed;
     double seconds[kWays][kClasses] = {};
     double mixed_seconds[kWays] = {};
     double packets = 0;
   };
 
   void replay_way(Way way, const Recording& recording, const Stream* streams, Repetition& out) {
-    if (way == kFas || way == kHierarchy) {
-      const Intersector& by_class = way == kFas ? *out.by_class : *hierarchy_;
-      const Intersector& mixed = way == kFas ? *out.mixed : *hierarchy_;
+    if (way == kFas || way == kTrees || way == kHierarchy) {
+      const Intersector& by_class = way == kFas     ? *out.by_class
+                                    : way == kTrees ? *out.always_by_class
+                                                    : *hierarchy_;
+      const Intersector& mixed = way == kFas ? *out.mixed : way == kTrees ? *out.always_mixed : *hierarchy_;
       for (int c = 0; c < kClasses; ++c)
-        out.seconds[way][c] +=
-            replay(by_class, streams[c], recording, name_, way == kFas ? "fas" : "hierarchy");
+        out.seconds[way][c] += replay(by_class, streams[c], recording, name_, kNames[way]);
       out.mixed_seconds[way] += replay_mixed(mixed, recording);
       return;
     }
@@ -295,14 +303,13 @@ Times measure(const std::string& path, const Arguments& arguments) {
   Times out = contest->times();
   const double start = now();
   const_cast<CompiledScene&>(renderer.compiled()).rebuild(true);  // gives the same again
-  out.build[kHierarchy] = out.build[kFas] = now() - start;
+  out.build[kHierarchy] = out.build[kTrees] = out.build[kFas] = now() - start;
   return out;
 }
 
 }  // namespace
 
 int run(const Arguments& arguments) {
-  const char* ways[kWays] = {"fas", "hierarchy", "embree", "robust"};
   double logs[6] = {};
   int counts[6] = {};
   const auto mean = [&](int which, double ratio) {
@@ -323,7 +330,7 @@ int run(const Arguments& arguments) {
     const auto ns = [&](double seconds, double rays) { return rays > 0 ? 1e9 * seconds / rays : 0; };
     for (int way = 0; way < kWays; ++way) {
       std::printf("| %s | %.2f/%.2f/%.2f | %s | %.0f | %.0f | %.0f | %.0f | %.1f |\n", name.c_str(),
-                  1e-6 * t.rays[0], 1e-6 * t.rays[1], 1e-6 * t.rays[2], ways[way],
+                  1e-6 * t.rays[0], 1e-6 * t.rays[1], 1e-6 * t.rays[2], kNames[way],
                   ns(t.seconds[way][0], t.rays[0]), ns(t.seconds[way][1], t.rays[1]),
                   ns(t.seconds[way][2], t.rays[2]), ns(t.mixed[way], all), 1e3 * t.build[way]);
     }

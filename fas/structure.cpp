@@ -85,7 +85,8 @@ void Structure::Parts::plant(Class& rays, std::uint32_t number) {
   else
     rays.beams =
         std::make_unique<BeamTree>(*hierarchy, rays.origins, options.condition, pool, tuner, number, split);
-  rays.choice = std::make_unique<Choice>(options.expected_rays, static_cast<double>(order.size()));
+  rays.choice = std::make_unique<Choice>(
+      options.expected_rays, rays.is_flat() ? Choice::kMakePrimitive * static_cast<double>(order.size()) : 0);
 }
 
 Structure::Structure(const Primitives& primitives, const Options& options)

@@ -19,23 +19,16 @@ constexpr std::uint32_t kFew = 6;
 constexpr int kMostStalls = 3;
 /// Subtrees of so few primitives are opened at once.
 constexpr std::uint32_t kSmallSubtree = 4;
-/// How many entries are looked at to find the extent of what a face sees.
-constexpr std::size_t kExtentEntries = 16384;
+/// How many entries are looked at to find the extent of what a face sees: enough for their boxes to be small
+/// beside it.
+constexpr std::size_t kExtentEntries = 1024;
+/// Areas of primitives are kept until this part of the memory of all trees is in use.
+constexpr double kAreaShare = 0.25;
 /// All coordinates are in units of the root square, which has 2^24 of them on a side. A ray's own coordinate
 /// is cut off to whole units and has errors far below one, so areas are grown by one.
 constexpr double kUnits = 0x1p24, kPad = 1;
 
 using Clock = std::chrono::steady_clock;
-
-/// A candidate's area in the units of a root square.
-struct Area {
-  std::uint32_t id = 0;
-  double x0, x1, y0, y1, z0, z1;
-  int cuts = 0;
-  double cut[3][3];
-  bool covers = false;
-  double inside[3];
-};
 
 /// Tags of Node::state; nodes and leaves are aligned to 16 bytes.
 constexpr std::uintptr_t kNone = 0, kBusy = 1, kLeafTag = 2, kChildrenTag = 4, kTags = 15;
@@ -68,31 +61,26 @@ struct alignas(16) HyperTree::Node {
   bool final = false;
 };
 
-namespace {
-
 /// Areas of a face in units of its root square.
-class Square {
+class HyperTree::Square {
  public:
-  Square(const Plane& plane, const Candidates& candidates, double u0, double v0, double scale)
-      : plane_(plane), candidates_(candidates), u0_(u0), v0_(v0), scale_(scale) {}
+  Square(HyperTree& tree, Root& root, int face, ThreadState& state, TreeCounts& counts)
+      : tree_(tree),
+        plane_(*tree.planes_[static_cast<std::size_t>(face)]),
+        root_(root),
+        state_(state),
+        counts_(counts) {}
 
-  bool primitive(std::uint32_t id, Geometry& geometry, Area& out) const {
-    candidates_.geometry(id, geometry);
-    Footprint f;
-    if (!plane_.project(geometry, f)) return false;
-    place(f, out);
-    out.id = id;
-    out.cuts = f.cuts;
-    out.covers = f.covers;
-    for (int k = 0; k < f.cuts; ++k) {
-      const double a = f.cut[k][0], b = f.cut[k][1], c = f.cut[k][2];
-      out.cut[k][0] = a / scale_;
-      out.cut[k][1] = b / scale_;
-      const double rounding = 0x1p-48 * (std::fabs(a * u0_) + std::fabs(b * v0_) + std::fabs(c));
-      out.cut[k][2] = a * u0_ + b * v0_ + c + rounding + kPad * (std::fabs(a) + std::fabs(b)) / scale_;
-      out.inside[k] = f.inside[k] + 2 * (rounding + kPad * (std::fabs(a) + std::fabs(b)) / scale_);
+  /// Null: the face does not see the primitive. Valid until the next call.
+  const Area* primitive(std::uint32_t id) {
+    const Area* area = root_.areas.find(id);
+    if (!area) {
+      area = project(id) ? &area_ : &AreaStore::unseen();
+      const Pool& pool = tree_.pool_;
+      if (static_cast<double>(pool.used()) < kAreaShare * static_cast<double>(pool.budget()))
+        counts_.bytes += root_.areas.keep(id, *area, state_.arena);
     }
-    return true;
+    return area != &AreaStore::unseen() ? area : nullptr;
   }
   bool subtree(const Candidates::Child& child, Area& out) const {
     Footprint f;
@@ -105,15 +93,41 @@ class Square {
   }
 
  private:
+  bool project(std::uint32_t id) {
+    Geometry& geometry = state_.scratch->geometry;
+    tree_.candidates_.geometry(id, geometry);
+    Footprint f;
+    if (!plane_.project(geometry, f)) return false;
+    Area& out = area_;
+    place(f, out);
+    out.id = id;
+    out.cuts = static_cast<std::uint8_t>(f.cuts);
+    out.covers = f.covers;
+    for (int k = 0; k < f.cuts; ++k) {
+      const double a = f.cut[k][0], b = f.cut[k][1], c = f.cut[k][2];
+      out.cut[k][0] = a / root_.scale;
+      out.cut[k][1] = b / root_.scale;
+      const double rounding = 0x1p-48 * (std::fabs(a * root_.u0) + std::fabs(b * root_.v0) + std::fabs(c));
+      const double pad = kPad * (std::fabs(a) + std::fabs(b)) / root_.scale;
+      out.cut[k][2] = a * root_.u0 + b * root_.v0 + c + rounding + pad;
+      out.inside[k] = f.covers ? f.inside[k] + 2 * (rounding + pad) : 0;
+    }
+    return true;
+  }
   void place(const Footprint& f, Area& out) const {
-    out.x0 = (f.u0 - u0_) * scale_ - kPad, out.x1 = (f.u1 - u0_) * scale_ + kPad;
-    out.y0 = (f.v0 - v0_) * scale_ - kPad, out.y1 = (f.v1 - v0_) * scale_ + kPad;
+    out.x0 = (f.u0 - root_.u0) * root_.scale - kPad, out.x1 = (f.u1 - root_.u0) * root_.scale + kPad;
+    out.y0 = (f.v0 - root_.v0) * root_.scale - kPad, out.y1 = (f.v1 - root_.v0) * root_.scale + kPad;
     out.z0 = f.z0, out.z1 = f.z1;
   }
+  HyperTree& tree_;
   const Plane& plane_;
-  const Candidates& candidates_;
-  double u0_, v0_, scale_;
+  Root& root_;
+  ThreadState& state_;
+  TreeCounts& counts_;
+  Area area_;
 };
+
+namespace {
 
 /// A square part of the root square.
 struct Part {
@@ -221,6 +235,7 @@ void HyperTree::clear() {
   for (Root& root : roots_) {
     root.state.store(0, std::memory_order_relaxed);
     root.node = nullptr;
+    root.areas.clear();
   }
 }
 
@@ -288,7 +303,7 @@ bool HyperTree::make_root(int face, ThreadState& state, TreeCounts& counts) {
   root.node->count = 1;
   root.node->below = candidates_.count();
   counts.nodes += 1;
-  counts.bytes += sizeof(Node) + sizeof(std::uint32_t);
+  counts.bytes += sizeof(Node) + sizeof(std::uint32_t) + root.areas.start(candidates_.count(), state.arena);
   counts.nanoseconds += static_cast<std::uint64_t>((Clock::now() - start).count());
   root.state.store(2, std::memory_order_release);
   return true;
@@ -328,19 +343,19 @@ HyperTree::Place HyperTree::descend(Root& root, int face, std::uint32_t u, std::
   }
 }
 
-std::uintptr_t HyperTree::make_node(Node& node, const Root& root, int face, const Cell& cell,
-                                    ThreadState& state, TreeCounts& counts, bool must_split) {
+std::uintptr_t HyperTree::make_node(Node& node, Root& root, int face, const Cell& cell, ThreadState& state,
+                                    TreeCounts& counts, bool must_split) {
   if (cell.depth < kDeepest && !node.final && (must_split || node.below > kLarge))
     return make_children(node, root, face, cell, state, counts);
   return make_leaf(node, root, face, cell, state, counts);
 }
 
 /// Hands the candidates of a node to its four children.
-std::uintptr_t HyperTree::make_children(Node& node, const Root& root, int face, const Cell& cell,
+std::uintptr_t HyperTree::make_children(Node& node, Root& root, int face, const Cell& cell,
                                         ThreadState& state, TreeCounts& counts) {
   const Clock::time_point start = Clock::now();
   TreeScratch& scratch = *state.scratch;
-  const Square square(*planes_[static_cast<std::size_t>(face)], candidates_, root.u0, root.v0, root.scale);
+  Square square(*this, root, face, state, counts);
   const double size = std::ldexp(0.5, kBits - cell.depth);
   Part parts[4];
   Truncation truncation[4];
@@ -369,7 +384,7 @@ std::uintptr_t HyperTree::make_children(Node& node, const Root& root, int face, 
     stack.pop_back();
     if ((entry & Candidates::kSubtree) == 0) {
       ++looked_at;
-      if (square.primitive(entry, scratch.geometry, area)) hand_out(area, 1);
+      if (const Area* seen = square.primitive(entry)) hand_out(*seen, 1);
       continue;
     }
     // A subtree is handed on whole where it is small beside the children's cells.
@@ -420,10 +435,10 @@ std::uintptr_t HyperTree::make_children(Node& node, const Root& root, int face, 
 }
 
 /// Opens what is closed, and quantises; or splits after all where that gives too many.
-std::uintptr_t HyperTree::make_leaf(Node& node, const Root& root, int face, const Cell& cell,
-                                    ThreadState& state, TreeCounts& counts) {
+std::uintptr_t HyperTree::make_leaf(Node& node, Root& root, int face, const Cell& cell, ThreadState& state,
+                                    TreeCounts& counts) {
   TreeScratch& scratch = *state.scratch;
-  const Square square(*planes_[static_cast<std::size_t>(face)], candidates_, root.u0, root.v0, root.scale);
+  Square square(*this, root, face, state, counts);
   const Part part{static_cast<double>(cell.u), static_cast<double>(cell.v),
                   std::ldexp(1.0, kBits - cell.depth)};
   std::vector<std::uint32_t>& stack = scratch.stack;
@@ -438,10 +453,11 @@ std::uintptr_t HyperTree::make_leaf(Node& node, const Root& root, int face, cons
     const std::uint32_t entry = stack.back();
     stack.pop_back();
     if ((entry & Candidates::kSubtree) == 0) {
-      if (!square.primitive(entry, scratch.geometry, area) || !part.meets(area)) continue;
-      truncation.see(part, area);
-      covering += part.within(area);
-      areas.push_back(area);
+      const Area* seen = square.primitive(entry);
+      if (!seen || !part.meets(*seen)) continue;
+      truncation.see(part, *seen);
+      covering += part.within(*seen);
+      areas.push_back(*seen);
       continue;
     }
     const int count = candidates_.open(entry, children);

@@ -25,6 +25,7 @@
 #include <memory>
 #include <vector>
 
+#include "fas/areas.h"
 #include "fas/candidates.h"
 #include "fas/kernels.h"
 #include "fas/projection.h"
@@ -136,12 +137,13 @@ class HyperTree {
     std::atomic<std::uint32_t> state{0};  ///< 0 nothing, 1 in the making, 2 there, 3 given up
     double u0 = 0, v0 = 0, scale = 0, cell = 0;
     Node* node = nullptr;
+    AreaStore areas;
   };
   struct Cell {
     std::uint32_t u, v;  ///< corner, in units of the root square
     int depth;
   };
-  class Filter;
+  class Square;
 
   float split_at(const Leaf& leaf) const {
     return static_cast<float>(kPatience * tuner_.per_candidate() * (8 + leaf.count));
@@ -149,11 +151,11 @@ class HyperTree {
   bool make_root(int face, ThreadState& state, TreeCounts& counts);
   Place descend(Root& root, int face, std::uint32_t u, std::uint32_t v, ThreadState& state, TreeCache& cache,
                 const Leaf*& leaf);
-  std::uintptr_t make_node(Node& node, const Root& root, int face, const Cell& cell, ThreadState& state,
+  std::uintptr_t make_node(Node& node, Root& root, int face, const Cell& cell, ThreadState& state,
                            TreeCounts& counts, bool must_split);
-  std::uintptr_t make_children(Node& node, const Root& root, int face, const Cell& cell, ThreadState& state,
+  std::uintptr_t make_children(Node& node, Root& root, int face, const Cell& cell, ThreadState& state,
                                TreeCounts& counts);
-  std::uintptr_t make_leaf(Node& node, const Root& root, int face, const Cell& cell, ThreadState& state,
+  std::uintptr_t make_leaf(Node& node, Root& root, int face, const Cell& cell, ThreadState& state,
                            TreeCounts& counts);
   void split_leaf(const Query& query, ThreadState& state, TreeCache& cache, const Leaf& leaf);
   void visit_leaves(const Root& root, const Node& node, const Cell& cell, int face,

@@ -5,14 +5,19 @@
 #include <algorithm>
 #include <cstdlib>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "pafas/estimate.h"
 #include "pafas/master.h"
 #include "pafas/mpi_transport.h"
+#include "pafas/simulator.h"
 #include "pafas/worker.h"
 #include "rayshade/cli/program.h"
 #include "rayshade/cli/signals.h"
+#include "rayshade/image/output_file.h"
+#include "rayshade/schedule/block_costs.h"
 
 namespace {
 
@@ -52,34 +57,68 @@ int refuse(int meant) {
   return rayshade::kUsage;
 }
 
-/// Where nobody has started MPI, what needs none does without.
-bool only_tells_about_itself(const std::vector<std::string>& arguments) {
-  if (any_of({"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"})) return false;
-  try {
-    using rayshade::Action;
-    const Action action = rayshade::parse_options(arguments, rayshade::Program::kPafas).action;
-    return action == Action::kHelp || action == Action::kVersion || action == Action::kManOptions ||
-           action == Action::kCompletion;
-  } catch (const rayshade::UsageError&) {
-    return true;
+/// What needs no MPI does without where nobody has started it: information, simulation and estimate.
+class SingleEngine final : public rayshade::LocalEngine {
+ public:
+  rayshade::Program kind() const override { return rayshade::Program::kPafas; }
+  int estimate(const rayshade::EnginePlan& plan) override { return pafas::run_estimate(plan, scene_bytes()); }
+};
+
+bool needs_no_mpi(const rayshade::Options& options) {
+  using rayshade::Action;
+  switch (options.action) {
+    case Action::kHelp:
+    case Action::kVersion:
+    case Action::kManOptions:
+    case Action::kCompletion:
+      return true;
+    default:
+      return options.cluster.estimate > 0;
   }
 }
 
-class InformationEngine final : public rayshade::LocalEngine {
- public:
-  rayshade::Program kind() const override { return rayshade::Program::kPafas; }
-};
+int simulate(const rayshade::Options& options) {
+  if (!options.cluster.costs) throw rayshade::UsageError("--simulate needs block costs: --costs FILE");
+  const pafas::SimulatorReport report =
+      pafas::simulate(rayshade::read_block_costs(*options.cluster.costs),
+                      pafas::simulator_options(options, options.cluster.simulate));
+  fmt::print("{}", pafas::report_text(report));
+  if (options.stats_file) {
+    rayshade::OutputFile file(*options.stats_file);
+    file.write(pafas::report_json(report));
+    file.commit();
+  }
+  return rayshade::kComplete;
+}
+
+/// The exit code where MPI is not needed; empty where it is.
+std::optional<int> run_without_mpi(const std::vector<std::string>& arguments) {
+  if (any_of({"OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"})) return {};
+  try {
+    const rayshade::Options options = rayshade::parse_options(arguments, rayshade::Program::kPafas);
+    if (options.cluster.simulate > 0) return simulate(options);
+    if (!needs_no_mpi(options)) return {};
+  } catch (const rayshade::BlockCostsError& error) {
+    fmt::print(stderr, "pafas: {}\n", error.what());
+    return rayshade::kFailed;
+  } catch (const rayshade::WriteError& error) {
+    fmt::print(stderr, "pafas: {}\n", error.what());
+    return rayshade::kFailed;
+  } catch (const rayshade::UsageError& error) {
+    fmt::print(stderr, "pafas: {}\nTry 'pafas --help'.\n", error.what());
+    return rayshade::kUsage;
+  }
+  SingleEngine engine;
+  return rayshade::run_program(arguments, engine);
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const std::vector<std::string> words(argv + 1, argv + argc); only_tells_about_itself(words)) {
-    InformationEngine engine;
-    return rayshade::run_program(words, engine);
-  }
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (const std::optional<int> code = run_without_mpi(arguments)) return *code;
   if (const int meant = tasks_without_mpi(); meant > 1) return refuse(meant);
   pafas::MpiTransport transport(&argc, &argv);
-  const std::vector<std::string> arguments(argv + 1, argv + argc);
   int code = rayshade::kUsage;
   if (const int meant = meant_by_starter(); transport.size() == 1 && meant > 1) {
     code = refuse(meant);

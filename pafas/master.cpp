@@ -10,6 +10,7 @@
 #include <csignal>
 #include <thread>
 
+#include "pafas/estimate.h"
 #include "rayshade/cli/program.h"
 #include "rayshade/image/output_file.h"
 
@@ -42,6 +43,15 @@ void Master::begin(const EnginePlan& plan) {
   dedicated_ = plan.options.cluster.dedicated_master && !alone();
   report_.width = plan.settings.window_width();
   report_.height = plan.settings.window_height();
+  if (plan.options.cluster.costs) {
+    costs_ = read_block_costs(*plan.options.cluster.costs);
+    if (costs_->width != report_.width || costs_->height != report_.height)
+      throw RenderError(
+          fmt::format("'{}' has the costs of a picture of {} x {} pixels, and this one has {} x {}",
+                      *plan.options.cluster.costs, costs_->width, costs_->height, report_.width,
+                      report_.height),
+          {});
+  }
   if (alone()) return;
   package_ = files_.package();
   report_.package_bytes = package_.size();
@@ -49,6 +59,8 @@ void Master::begin(const EnginePlan& plan) {
   planned_ = true;
   for (const auto& [rank, hello] : std::exchange(early_, {})) greet(rank, hello);
 }
+
+int Master::estimate(const EnginePlan& plan) { return run_estimate(plan, files_.package().size()); }
 
 // ---- messages
 
@@ -216,12 +228,12 @@ bool Master::render_frame(Renderer& renderer, const FrameJob& job) {
     const Block block = book_->block(i);
     if (picture.is_present(block.x, block.y, block.width, block.height)) book_->skip(i);
   }
+  expect_costs();
   progress_ = {};
   progress_.blocks = book_->missing();
   progress_.pixels = picture.width() * picture.height();
   progress_.pixels_before = picture.present();
   report_.resumed_pixels += static_cast<std::uint64_t>(progress_.pixels_before);
-  const PixelStatistics before = picture.statistics();
 
   feed_ = std::make_unique<QueueFeed>();
   std::unique_ptr<FrameCrew> crew;
@@ -255,8 +267,14 @@ bool Master::render_frame(Renderer& renderer, const FrameJob& job) {
   if (job.progress) job.progress(progress());
   book_.reset();
   job_ = nullptr;
-  renderer.count_frame(picture, before, seconds_now() - start);
+  renderer.count_frame(picture, seconds_now() - start);
   return picture.complete();
+}
+
+void Master::expect_costs() {
+  if (!costs_) return;
+  const std::vector<double> seconds = redistribute(*costs_, book_->grid());
+  for (std::size_t i = 0; i < seconds.size(); ++i) book_->expect(static_cast<std::int64_t>(i), seconds[i]);
 }
 
 FrameProgress Master::progress() {
@@ -285,6 +303,7 @@ bool Master::take_result(int rank, int frame, Result result) {
     span.counted = book_->finished(result.number, rank, result.cpu_seconds, seconds_now());
     if (span.counted) {
       if (job_->keep) job_->keep(pixels);
+      if (job_->cost) job_->cost(span.block, {result.cpu_seconds});
       job_->picture.put(pixels);
       ++progress_.blocks_done;
       ++row.blocks;

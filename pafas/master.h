@@ -18,6 +18,7 @@
 #include "pafas/timing.h"
 #include "pafas/transport.h"
 #include "rayshade/cli/engine.h"
+#include "rayshade/schedule/block_costs.h"
 #include "rayshade/schedule/work_book.h"
 
 namespace pafas {
@@ -40,6 +41,8 @@ class Master final : public rayshade::Engine {
   void begin(const rayshade::EnginePlan& plan) override;
   bool render_frame(rayshade::Renderer& renderer, const rayshade::FrameJob& job) override;
   void end(rayshade::RenderStatistics& statistics) override;
+  std::uint64_t scene_bytes() const override { return package_.size(); }
+  int estimate(const rayshade::EnginePlan& plan) override;
   std::string report_text(bool verbose) const override { return report_.text(verbose); }
   void report_json(rayshade::JsonWriter& json) const override { report_.write_json(json); }
 
@@ -73,7 +76,7 @@ class Master final : public rayshade::Engine {
   void give_own_work();
   void watch();
   void lose(int rank, Phase phase, const std::string& why);
-  void make_package();
+  void expect_costs();
   std::string refusal_of(const Hello& hello) const;
   rayshade::FrameProgress progress();
 
@@ -89,6 +92,7 @@ class Master final : public rayshade::Engine {
   rayshade::Renderer* renderer_ = nullptr;
   const rayshade::Options* run_options_ = nullptr;
   int threads_ = 1;
+  std::optional<rayshade::BlockCosts> costs_;  ///< expected
   double watched_ = 0;
 
   // Of the frame at hand:

@@ -220,8 +220,7 @@ void fields(Archive& a, Block& b) {
 }
 template <class Archive>
 void fields(Archive& a, EncodedBlock& b) {
-  a(b.x, b.y, b.width, b.height, b.pixels, b.layers, b.statistics.not_a_number, b.statistics.negative,
-    b.statistics.infinite);
+  a(b.x, b.y, b.width, b.height, b.pixels, b.layers, b.odd);
 }
 
 }  // namespace rayshade

@@ -72,8 +72,8 @@ void check(const SimulatorOptions& o) {
   need(o.speed_spread >= 0 && o.speed_spread < 1, "the spread of speeds must be from 0 to below 1");
   need(o.bytes_per_second > 0, "the bandwidth must be positive");
   need(o.killed >= 0 && o.killed <= 1, "the part that is killed must be from 0 to 1");
-  for (const double seconds : {o.latency_seconds, o.start_seconds, o.compile_seconds, o.service_seconds,
-                               o.service_per_byte, o.silence_seconds})
+  for (const double seconds : {o.latency_seconds, o.start_seconds, o.compile_seconds.value_or(0),
+                               o.service_seconds, o.service_per_byte, o.silence_seconds})
     need(seconds >= 0 && std::isfinite(seconds), "times must not be negative");
 }
 
@@ -178,7 +178,8 @@ void Simulation::start_ranks() {
     if (i > 0) {
       const double bytes = static_cast<double>(costs_.scene_bytes);
       link_free += options_.service_seconds + bytes / options_.bytes_per_second;
-      it.ready = link_free + 2 * options_.latency_seconds + options_.compile_seconds;
+      it.ready = link_free + 2 * options_.latency_seconds +
+                 options_.compile_seconds.value_or(costs_.compile_seconds);
       count(bytes + kMessageBytes);
       if (dies) at(it.ready + death, What::kDeath, i);
     }
@@ -422,6 +423,46 @@ std::string report_json(const SimulatorReport& r) {
   j.value("lost_workers", whole(r.lost_workers));
   j.end_object();
   return j.text();
+}
+
+SimulatorOptions simulator_options(const rayshade::Options& options, int ranks) {
+  const rayshade::ClusterOptions& cluster = options.cluster;
+  SimulatorOptions out;
+  out.ranks = ranks;
+  out.schedule = cluster.schedule;
+  out.starts = cluster.start;
+  out.granularity = cluster.granularity;
+  out.block_side = options.block;
+  out.dedicated_master = cluster.dedicated_master;
+  double compile = -1, seed = 1;
+  const std::pair<const char*, double*> known[] = {{"latency", &out.latency_seconds},
+                                                   {"bandwidth", &out.bytes_per_second},
+                                                   {"start", &out.start_seconds},
+                                                   {"compile", &compile},
+                                                   {"service", &out.service_seconds},
+                                                   {"spread", &out.speed_spread},
+                                                   {"deaths", &out.killed},
+                                                   {"silence", &out.silence_seconds},
+                                                   {"seed", &seed}};
+  for (const std::string& word : cluster.assume) {
+    const std::size_t equals = word.find('=');
+    const auto entry = std::find_if(std::begin(known), std::end(known),
+                                    [&](const auto& k) { return k.first == word.substr(0, equals); });
+    if (equals == std::string::npos || entry == std::end(known))
+      throw rayshade::UsageError(fmt::format(
+          "--assume: '{}' is none of latency, bandwidth, start, compile, service, spread, deaths, "
+          "silence and seed with = and a number",
+          word));
+    *entry->second = rayshade::parse_real(word.substr(equals + 1), "--assume");
+  }
+  if (compile >= 0) out.compile_seconds = compile;
+  out.seed = static_cast<std::uint64_t>(std::abs(seed));
+  try {
+    check(out);
+  } catch (const std::invalid_argument& error) {
+    throw rayshade::UsageError(fmt::format("--assume: {}", error.what()));
+  }
+  return out;
 }
 
 std::string run_simulator(const std::string& costs_path, const SimulatorOptions& options, bool json) {

@@ -13,9 +13,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "rayshade/cli/options.h"
 #include "rayshade/schedule/block_costs.h"
 #include "rayshade/schedule/work_book.h"
 
@@ -30,10 +32,11 @@ struct SimulatorOptions {
   int most_copies = 2;
   std::vector<double> speeds;  ///< of the ranks, used in turn; empty: equal to the recorded one, or by spread
   double speed_spread = 0;     ///< speeds are even random numbers from 1 - spread to 1 + spread, below 1
-  double latency_seconds = 50e-6;   ///< of a message
-  double bytes_per_second = 1e9;    ///< of every link
-  double start_seconds = 0;         ///< from the start of the job until a slave can receive
-  double compile_seconds = 0;       ///< from the scene's arrival until it can render
+  double latency_seconds = 50e-6;  ///< of a message
+  double bytes_per_second = 1e9;   ///< of every link
+  double start_seconds = 0;        ///< from the start of the job until a slave can receive
+  std::optional<double>
+      compile_seconds;              ///< from the scene's arrival until it can render; unset: as recorded
   double service_seconds = 10e-6;   ///< of the master, per message
   double service_per_byte = .2e-9;  ///< and per byte: unpacking into the picture
   double killed = 0;                ///< part of the slaves that die at a random time of the run
@@ -65,6 +68,10 @@ SimulatorReport simulate(const rayshade::BlockCosts& costs, const SimulatorOptio
 
 std::string report_text(const SimulatorReport& report);
 std::string report_json(const SimulatorReport& report);
+
+/// What the program's options say; `assume`: words KEY=VALUE (latency, bandwidth, start, compile, service,
+/// spread, deaths, silence, seed). Throws rayshade::UsageError.
+SimulatorOptions simulator_options(const rayshade::Options& options, int ranks);
 
 /// Reads the costs, simulates, and returns the report as text or JSON. Throws BlockCostsError and
 /// std::invalid_argument.

@@ -14,8 +14,8 @@
 #include "pafas/run_report.h"
 #include "rayshade/cli/program.h"
 #include "rayshade/lang/parse.h"
-#include "rayshade/schedule/granularity.h"
 #include "rayshade/scene/scene.h"
+#include "rayshade/schedule/granularity.h"
 
 namespace pafas {
 

@@ -83,9 +83,21 @@ std::vector<OptionSpec> cluster_option_table() {
        "costs",
        {"FILE"},
        kCluster,
-       "Block costs to simulate with, as --block-costs wrote them.",
+       "Block costs, as --block-costs wrote them, to simulate with; or for the cost schedule to begin with.",
        [](Options& o, Values v) { o.cluster.costs = v[0]; },
        {"FILE"}},
+      {0,
+       "assume",
+       {"KEY=VALUE"},
+       kCluster,
+       "An assumption of --simulate and --estimate; may be given several times. latency (seconds of a "
+       "message), "
+       "bandwidth (bytes per second), start and compile (seconds until a rank can be reached, and from then "
+       "until "
+       "it can render), service (seconds of the master per message), spread (speeds differ by so much, from "
+       "0 to "
+       "1), deaths (share of the ranks that die), silence (seconds until that is noticed), seed.",
+       [](Options& o, Values v) { o.cluster.assume.push_back(v[0]); }},
       {0,
        "estimate",
        {"N"},

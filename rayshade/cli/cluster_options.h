@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace rayshade {
 
@@ -14,7 +15,8 @@ struct ClusterOptions {
   bool dedicated_master = false;      ///< rank 0 renders nothing
   int simulate = 0;                   ///< ranks to simulate; 0: render
   int estimate = 0;                   ///< ranks to predict time and memory for; 0: render
-  std::optional<std::string> costs;   ///< file of block costs to simulate with
+  std::optional<std::string> costs;   ///< file of block costs to simulate with, or to begin with
+  std::vector<std::string> assume;    ///< KEY=VALUE for the simulator
   std::optional<std::string> tile_map, timeline;
 };
 

@@ -40,6 +40,10 @@ class Engine {
   virtual bool render_frame(Renderer& renderer, const FrameJob& job) { return renderer.render_frame(job); }
   /// After the last frame: adds the counts of others to the statistics of this process.
   virtual void end(RenderStatistics&) {}
+  /// Bytes of the scene and all its files, as far as they are known.
+  virtual std::uint64_t scene_bytes() const { return 0; }
+  /// In place of rendering (--estimate): predicts what it would take. Returns the exit code.
+  virtual int estimate(const EnginePlan&) { throw UsageError("nothing to estimate for a single machine"); }
   /// What it has to say of itself, after the statistics: text for people, members of the JSON object.
   virtual std::string report_text(bool /*verbose*/) const { return {}; }
   virtual void report_json(JsonWriter&) const {}
@@ -50,6 +54,7 @@ class LocalEngine : public Engine {
  public:
   Program kind() const override { return Program::kRayshade; }
   Provider& provider() override { return provider_; }
+  std::uint64_t scene_bytes() const override { return provider_.bytes_read(); }
 
  private:
   FileProvider provider_;

@@ -429,6 +429,15 @@ std::vector<OptionSpec> make_table() {
                "and each in false colours as a PNG beside it.",
                [](Options& o, Values v) { o.cost_map = v[0]; },
                {"FILE"}});
+  t.push_back(
+      {0,
+       "block-costs",
+       {"FILE"},
+       kReport,
+       "Write what each block took, for the simulator and the schedules of pafas(1). Of several frames the "
+       "last counts.",
+       [](Options& o, Values v) { o.block_costs = v[0]; },
+       {"FILE"}});
   t.push_back({0,
                "fas-dump",
                {"FILE.svg"},

@@ -56,7 +56,7 @@ struct Options {
   int threads = 0;  ///< 0: what the process may use
   int block = 0;    ///< side of a block; 0: chosen
   IntersectorKind intersector = IntersectorKind::kFas;
-  std::optional<std::string> stats_file, cost_map, layers, fas_dump;
+  std::optional<std::string> stats_file, cost_map, layers, fas_dump, block_costs;
   std::uint64_t fas_memory = 0;  ///< bytes; 0: a quarter of what the process may use
   fas::Split fas_split = fas::Split::kAdaptive;
   double verify = 0;                          ///< share of queries that brute force is asked again

@@ -5,6 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+
+#include "rayshade/image/directory.h"
 #include "rayshade/image/layer_picture.h"
 
 namespace rayshade {
@@ -111,6 +114,32 @@ std::string PictureOutput::write_partial(const FrameBuffer& picture, int frame) 
   write_picture(picture, format_, info(frame), file);
   file.commit();
   return partial;
+}
+
+std::string PictureOutput::write_stopped(const FrameBuffer& picture, int frame) {
+  if (!appended_) return write_partial(picture, frame);
+  if (!appending_) appending_ = std::make_unique<OutputFile>(name_);
+  if (appending_->direct()) {
+    appending_->commit();  // what has gone out are whole frames
+    return write_partial(picture, frame);
+  }
+  std::string partial = partial_name(name_);
+  write_picture(picture, format_, info(frame), *appending_);
+  appending_->commit_as(partial);
+  appending_.reset();
+  return partial;
+}
+
+void PictureOutput::remove_leftovers() const {
+  // A killed run was at one frame; a name for each of a million would cost more than the file that stays.
+  constexpr int kFrames = 10'000;
+  if (name_ == "-") return;
+  std::vector<std::string> files;
+  for (int i = 0; i < (numbered_ ? std::min(settings_.frames, kFrames) : 1); ++i) {
+    files.push_back(file_name(name_, settings_.first_frame + i));
+    files.push_back(partial_name(files.back()));
+  }
+  rayshade::remove_leftovers(files);
 }
 
 void PictureOutput::remove_partial(int frame) {

@@ -32,6 +32,9 @@ class PictureOutput {
   /// Writes what is there of a frame beside the real name; nothing where frames go to standard output.
   /// Returns the name of the file, empty if there is none.
   std::string write_partial(const FrameBuffer& picture, int frame);
+  /// The same at the end of a run that was stopped in this frame: where frames go into one file, those that
+  /// are finished stand before it. Nothing more can be written afterwards.
+  std::string write_stopped(const FrameBuffer& picture, int frame);
   /// Removes the file of write_partial, if there is one.
   void remove_partial(int frame);
   /// The size of this frame's file; nothing where it has none of its own (yet).
@@ -40,6 +43,9 @@ class PictureOutput {
   std::string file_name(const std::string& pattern, int frame) const;
   /// After the last frame: the file of appended frames gets its name.
   void finish();
+  /// Before anything is written: removes the hidden files of these pictures, and of what is kept of
+  /// unfinished ones, that killed runs left behind.
+  void remove_leftovers() const;
 
  private:
   PictureInfo info(int frame) const;

@@ -14,6 +14,7 @@
 #include <memory>
 #include <new>
 
+#include "rayshade/cli/cost_recorder.h"
 #include "rayshade/cli/kept_work.h"
 #include "rayshade/cli/options.h"
 #include "rayshade/cli/pictures.h"
@@ -78,6 +79,7 @@ class Run {
     }
     settings_ = resolve_settings(scene_.settings, options_.settings);
     take_report_settings();
+    if (options_.cluster.estimate > 0) return estimate();
     if (options_.action == Action::kRender) return render();
     Renderer renderer(scene_, settings_, engine_.provider(), render_options());
     if (options_.action == Action::kExplain) return explain(renderer);
@@ -219,10 +221,12 @@ class Run {
                                   files.hashes(), RAYSHADE_VERSION);
         },
         picture);
+    output.remove_leftovers();
     engine_.begin({options_, settings_, renderer, format, run_.scene_hash});
     Progress progress(report_.get(), {!chatty(), report_.get() == stderr && isatty(STDERR_FILENO) != 0,
                                       options_.report_frequency.value_or(0), settings_.min_y});
     SignalRequests requests;
+    CostRecorder costs;
     bool complete = true;
     for (int i = 0; i < settings_.frames && complete; ++i) {
       const int frame = settings_.first_frame + i;
@@ -241,7 +245,7 @@ class Run {
                                                      output.write_partial(picture, frame);
                                                    }
                                                  },
-                                                 kept.keeper(frame, picture)});
+                                                 kept.keeper(frame, picture), costs.of_frame()});
       progress.finish();
       if (complete) {
         output.write_frame(picture, frame);
@@ -250,22 +254,43 @@ class Run {
           write_text(output.file_name(*options_.fas_dump, frame), tree_drawing(renderer, picture, frame));
       } else {
         kept.save();
-        const std::string partial = output.write_partial(picture, frame);
-        complain(engine_, partial.empty()
-                              ? "stopped; no partial picture is kept on standard output"
-                              : fmt::format("stopped; the partial picture is {}{}", partial, kept.advice()));
+        const std::string partial = output.write_stopped(picture, frame);
+        complain(engine_, fmt::format("stopped at {}; {}{}", progress_text(picture, i),
+                                      partial.empty() ? "no partial picture is kept on standard output"
+                                                      : "the partial picture is " + partial,
+                                      kept.advice()));
       }
     }
-    if (complete || renderer.statistics().frames > 0) output.finish();
-    if (complete) kept.finish();
+    if (complete) {
+      output.finish();
+      kept.finish();
+    }
     run_.blocks_resumed = kept.blocks_resumed();
     run_.pixels_resumed = kept.pixels_resumed();
     run_.frames_resumed = kept.frames_resumed();
     RenderStatistics statistics = renderer.statistics();
     engine_.end(statistics);
+    if (options_.block_costs && complete)
+      write_text(*options_.block_costs,
+                 format_block_costs(
+                     costs.costs(settings_, format, statistics, run_.parse_seconds, engine_.scene_bytes())));
     const bool differs = statistics.verify.differing > 0;
     report(statistics, differs ? "differs" : complete ? "complete" : "stopped");
     return verified(statistics, complete ? kComplete : kStopped);
+  }
+
+  /// How far the i-th frame is, rounded down: "43 %" or "43 % of frame 7 (3 of 10)".
+  std::string progress_text(const FrameBuffer& picture, int i) const {
+    std::string out = fmt::format("{} %", 100 * picture.present() / (picture.width() * picture.height()));
+    if (settings_.frames > 1)
+      out += fmt::format(" of frame {} ({} of {})", settings_.first_frame + i, i + 1, settings_.frames);
+    return out;
+  }
+
+  int estimate() {
+    Renderer renderer(scene_, settings_, engine_.provider(), render_options());
+    PictureFormat format;
+    return engine_.estimate({options_, settings_, renderer, format, run_.scene_hash});
   }
 
   std::string why_no_eye_tree() const {

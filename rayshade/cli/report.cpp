@@ -86,6 +86,12 @@ std::string statistics_text(const RenderStatistics& s, const RunSummary& run, bo
     out += fmt::format("{:<36}{}\n", label, value);
   };
   const auto count = [&](const char* label, std::uint64_t n) { row(label, fmt::format("{}", n)); };
+  if (run.frames_resumed > 0 || run.blocks_resumed > 0) {
+    // The counts that follow are of this run.
+    row("Done by earlier runs:", fmt::format("{} frame{}, {} block{} ({} pixels)", run.frames_resumed,
+                                             run.frames_resumed == 1 ? "" : "s", run.blocks_resumed,
+                                             run.blocks_resumed == 1 ? "" : "s", run.pixels_resumed));
+  }
   count("Eye rays:", c.eye_rays);
   count("Shadow rays:", c.shadow_rays);
   count("Reflected rays:", c.reflected_rays);

@@ -76,7 +76,7 @@ ClassTracer::ClassTracer(const CompiledScene& scene, std::unique_ptr<fas::HyperT
                          double expected, bool always)
     : scene_(scene),
       flat_(std::move(tree)),
-      choice_(std::make_unique<fas::Choice>(expected, scene.groups[0].count)),
+      choice_(std::make_unique<fas::Choice>(expected, fas::Choice::kMakePrimitive * scene.groups[0].count)),
       from_apex_(from_apex),
       always_(always) {}
 
@@ -84,7 +84,7 @@ ClassTracer::ClassTracer(const CompiledScene& scene, std::unique_ptr<fas::BeamTr
                          bool always)
     : scene_(scene),
       beams_(std::move(tree)),
-      choice_(std::make_unique<fas::Choice>(expected, scene.groups[0].count)),
+      choice_(std::make_unique<fas::Choice>(expected, 0)),
       always_(always) {}
 
 void ClassTracer::ask(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,

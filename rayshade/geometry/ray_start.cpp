@@ -11,8 +11,6 @@ namespace {
 /// How many error bounds the origin is moved off the surface: one for the point, one for the next test's own
 /// rounding, and as much again for tests near the silhouette.
 constexpr double kSafety = 4;
-/// Lower limits relative to the size of what is left, for rays and for shadow rays (objects.md 2).
-constexpr double kRayTolerance = kEpsilon, kShadowTolerance = 4 * kEpsilon;
 
 }  // namespace
 
@@ -22,15 +20,6 @@ RayStarts::RayStarts(const WorldHit& hit, double leaf_extent)
   const double coordinates = max_abs(hit.point);
   step = kSafety * std::max(hit.error, 2 * kUnit * coordinates);
   rounding = 4 * kUnit * coordinates;
-}
-
-RayStart RayStarts::toward(const Vec3& direction, double length_of_direction, bool shadow) const {
-  const bool behind = dot(direction, normal) < 0;
-  RayStart out;
-  out.origin = point + (behind ? -step : step) * normal;
-  const double tolerance = shadow ? kShadowTolerance : kRayTolerance;
-  out.lo = std::max(tolerance * extent, length_of_direction > 0 ? rounding / length_of_direction : 0);
-  return out;
 }
 
 RayStart secondary_start(const WorldHit& hit, const Vec3& direction, double extent, bool shadow) {

@@ -3,6 +3,8 @@
 // 2).
 #pragma once
 
+#include <algorithm>
+
 #include "rayshade/geometry/intersector.h"
 
 namespace rayshade {
@@ -86,7 +88,16 @@ struct RayStarts {
   RayStarts() = default;
   RayStarts(const WorldHit& hit, double extent);
   /// `length_of_direction`: 1 where it is known to be one to within rounding.
-  RayStart toward(const Vec3& direction, double length_of_direction, bool shadow) const;
+  RayStart toward(const Vec3& direction, double length_of_direction, bool shadow) const {
+    const double off = dot(direction, normal) < 0 ? -step : step;
+    const double tolerance = shadow ? kShadowTolerance : kRayTolerance;
+    return {point + off * normal,
+            std::max(tolerance * extent, length_of_direction > 0 ? rounding / length_of_direction : 0)};
+  }
+
+ private:
+  /// Lower limits relative to the size of what is left, for rays and for shadow rays (objects.md 2).
+  static constexpr double kRayTolerance = kEpsilon, kShadowTolerance = 4 * kEpsilon;
 };
 
 /// `extent`: largest extent of the leaf hit, in world units (leaf_extent).

@@ -25,7 +25,7 @@ void swap_words(char* data, std::size_t size, std::size_t word) {
   for (std::size_t i = 0; i + word <= size; i += word) std::reverse(data + i, data + i + word);
 }
 
-/// Pixels, then layer after layer, as they are recorded.
+/// Pixels, then layer after layer, then what is odd about pixels if any is, as they are recorded.
 std::string plain_bytes(const EncodedBlock& block, PixelStorage storage) {
   std::string out(reinterpret_cast<const char*>(block.pixels.data()), block.pixels.size());
   swap_words(out.data(), out.size(), word_size(storage));
@@ -33,6 +33,7 @@ std::string plain_bytes(const EncodedBlock& block, PixelStorage storage) {
   for (const std::vector<float>& layer : block.layers)
     out.append(reinterpret_cast<const char*>(layer.data()), layer.size() * sizeof(float));
   swap_words(out.data() + pixels, out.size() - pixels, sizeof(float));
+  out.append(reinterpret_cast<const char*>(block.odd.data()), block.odd.size());
   return out;
 }
 
@@ -78,8 +79,12 @@ std::string encode_block_record(int frame, const EncodedBlock& block, PixelStora
     throw std::invalid_argument("block record: no such rectangle");
   const auto pixels = static_cast<std::size_t>(block.width) * static_cast<std::size_t>(block.height);
   if (block.pixels.size() != pixels * pixel_size(storage) ||
-      std::ranges::any_of(block.layers, [&](const auto& layer) { return layer.size() != pixels; }))
+      std::ranges::any_of(block.layers, [&](const auto& layer) { return layer.size() != pixels; }) ||
+      (!block.odd.empty() && block.odd.size() != pixels))
     throw std::invalid_argument("block record: the block has not the bytes that it announces");
+  const PixelStatistics seen = count_odd(block.odd);
+  if ((seen == PixelStatistics{}) != block.odd.empty())
+    throw std::invalid_argument("block record: odd pixels, none of which is odd");
   const std::string plain = plain_bytes(block, storage);
   const std::optional<std::string> packed =
       packing == RecordPacking::kDeflate ? deflated(plain) : std::optional<std::string>();
@@ -91,7 +96,6 @@ std::string encode_block_record(int frame, const EncodedBlock& block, PixelStora
   out.number(static_cast<std::uint16_t>(block.layers.size()));
   for (const std::int64_t value : {block.x, block.y, block.width, block.height})
     out.number(static_cast<std::uint32_t>(value));
-  const PixelStatistics& seen = block.statistics;
   for (const std::uint64_t count : {seen.not_a_number, seen.negative, seen.infinite}) out.number(count);
   out.bytes(data.data(), data.size());
   return out.seal();
@@ -107,7 +111,7 @@ std::optional<BlockRecord> decode_block_payload(std::string_view payload, std::u
   EncodedBlock& block = out.block;
   for (std::int64_t* value : {&block.x, &block.y, &block.width, &block.height})
     *value = in.number<std::uint32_t>();
-  PixelStatistics& seen = block.statistics;
+  PixelStatistics seen;
   for (std::uint64_t* count : {&seen.not_a_number, &seen.negative, &seen.infinite})
     *count = in.number<std::uint64_t>();
   if (!in.ok() || !is_storage(out.storage) || !fits(block.x, block.width) || !fits(block.y, block.height))
@@ -117,7 +121,8 @@ std::optional<BlockRecord> decode_block_payload(std::string_view payload, std::u
       static_cast<std::uint64_t>(block.width) * static_cast<std::uint64_t>(block.height);
   const std::size_t each = recorded_pixel_size(out.storage, layers);
   if (pixels > limit / each) return {};
-  const std::uint64_t size = pixels * each;
+  const bool any_odd = seen != PixelStatistics{};
+  const std::uint64_t size = pixels * (each + (any_odd ? 1 : 0));
   std::string unpacked;
   std::string_view data = in.rest();
   if (packing == RecordPacking::kDeflate) {
@@ -139,6 +144,10 @@ std::optional<BlockRecord> decode_block_payload(std::string_view payload, std::u
     layer.resize(pixels);
     std::memcpy(layer.data(), data.data() + colors + i * pixels * sizeof(float), pixels * sizeof(float));
     swap_words(reinterpret_cast<char*>(layer.data()), pixels * sizeof(float), sizeof(float));
+  }
+  if (any_odd) {
+    block.odd.assign(data.end() - static_cast<std::ptrdiff_t>(pixels), data.end());
+    if (count_odd(block.odd) != seen) return {};
   }
   return out;
 }
@@ -169,7 +178,11 @@ EncodedBlock cut_block(const EncodedBlock& block, PixelStorage storage, std::int
       const auto values = block.layers[i].begin() + first;
       out.layers[i].insert(out.layers[i].end(), values, values + width);
     }
+    if (block.odd.empty()) continue;
+    const auto odd = block.odd.begin() + first;
+    out.odd.insert(out.odd.end(), odd, odd + width);
   }
+  if (count_odd(out.odd) == PixelStatistics{}) out.odd.clear();
   return out;
 }
 

@@ -39,24 +39,25 @@ void encode_pixels(const double* rgba, std::size_t count, PixelStorage storage, 
   }
 }
 
-PixelStatistics inspect(std::span<const double> rgba) {
-  PixelStatistics seen;
+/// As EncodedBlock::odd.
+std::vector<std::uint8_t> odd_pixels(std::span<const double> rgba) {
+  std::vector<std::uint8_t> odd;
   for (std::size_t i = 0; i + 3 < rgba.size(); i += 4) {
     const double* const p = &rgba[i];
     // The common pixel needs one comparison per channel.
     if (p[0] >= 0 && p[1] >= 0 && p[2] >= 0 && p[0] + p[1] + p[2] < std::numeric_limits<double>::max())
       continue;
-    bool nan = false, negative = false, infinite = false;
+    unsigned oddities = 0;
     for (int c = 0; c < 3; ++c) {
-      nan |= std::isnan(p[c]);
-      negative |= p[c] < 0;
-      infinite |= std::isinf(p[c]);
+      if (std::isnan(p[c])) oddities |= kNotANumber;
+      if (p[c] < 0) oddities |= kNegative;
+      if (std::isinf(p[c])) oddities |= kInfinite;
     }
-    seen.not_a_number += nan;
-    seen.negative += negative;
-    seen.infinite += infinite;
+    if (oddities == 0) continue;  // finite channels of an infinite sum
+    odd.resize(rgba.size() / 4);
+    odd[i / 4] = static_cast<std::uint8_t>(oddities);
   }
-  return seen;
+  return odd;
 }
 
 std::size_t area(std::int64_t width, std::int64_t height) {
@@ -97,16 +98,21 @@ std::size_t pixel_size(PixelStorage storage) {
   return 0;
 }
 
-PixelStatistics& PixelStatistics::operator+=(const PixelStatistics& other) {
-  not_a_number += other.not_a_number;
-  negative += other.negative;
-  infinite += other.infinite;
-  return *this;
+void PixelStatistics::add(std::uint8_t oddities) {
+  not_a_number += (oddities & kNotANumber) != 0;
+  negative += (oddities & kNegative) != 0;
+  infinite += (oddities & kInfinite) != 0;
+}
+
+PixelStatistics count_odd(std::span<const std::uint8_t> odd) {
+  PixelStatistics seen;
+  for (const std::uint8_t oddities : odd) seen.add(oddities);
+  return seen;
 }
 
 EncodedBlock encode_block(const PixelBlock& block, PixelStorage storage, const ColorEncoder& encoder) {
   check_spans(block);
-  EncodedBlock out{block.x, block.y, block.width, block.height, {}, {}, inspect(block.rgba)};
+  EncodedBlock out{block.x, block.y, block.width, block.height, {}, {}, odd_pixels(block.rgba)};
   out.pixels.resize(area(block.width, block.height) * pixel_size(storage));
   encode_pixels(block.rgba.data(), area(block.width, block.height), storage, encoder, out.pixels.data());
   out.layers.reserve(block.layers.size());
@@ -160,7 +166,7 @@ void FrameBuffer::put(const PixelBlock& block) {
   check(block.x, block.y, block.width, block.height);
   if (block.layers.size() != layer_names_.size())
     throw std::invalid_argument("pixel block with other layers than the picture");
-  const PixelStatistics seen = inspect(block.rgba);
+  const std::vector<std::uint8_t> odd = odd_pixels(block.rgba);
   const std::size_t width = static_cast<std::size_t>(block.width);
   {
     const std::shared_lock lock(rows_);
@@ -171,7 +177,7 @@ void FrameBuffer::put(const PixelBlock& block) {
         std::copy_n(block.layers[i].data() + start, width, layer_pixel(i, block.x, block.y + row));
     }
   }
-  mark(block.x, block.y, block.width, block.height, seen);
+  mark(block.x, block.y, block.width, block.height, odd);
 }
 
 void FrameBuffer::put(const EncodedBlock& block) {
@@ -180,7 +186,8 @@ void FrameBuffer::put(const EncodedBlock& block) {
   const bool layers_fit = block.layers.size() == layer_names_.size() &&
                           std::all_of(block.layers.begin(), block.layers.end(),
                                       [&](const auto& l) { return l.size() == pixels; });
-  if (block.pixels.size() != pixels * pixel_size_ || !layers_fit)
+  const bool odd_fits = block.odd.empty() || block.odd.size() == pixels;
+  if (block.pixels.size() != pixels * pixel_size_ || !layers_fit || !odd_fits)
     throw std::invalid_argument("encoded block of another size or form than the picture's");
   const std::size_t width = static_cast<std::size_t>(block.width);
   {
@@ -193,26 +200,35 @@ void FrameBuffer::put(const EncodedBlock& block) {
         std::copy_n(block.layers[i].data() + start, width, layer_pixel(i, block.x, block.y + row));
     }
   }
-  mark(block.x, block.y, block.width, block.height, block.statistics);
+  mark(block.x, block.y, block.width, block.height, block.odd);
 }
 
 void FrameBuffer::mark(std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height,
-                       const PixelStatistics& seen) {
+                       std::span<const std::uint8_t> odd) {
   auto* const bits = reinterpret_cast<std::uint64_t*>(present_bits_.data());
   std::int64_t fresh = 0;
+  PixelStatistics seen;
   for (std::int64_t row = y; row < y + height; ++row) {
     for (std::int64_t begin = x; begin < x + width;) {
       const std::int64_t end = std::min((begin / 64 + 1) * 64, x + width);
       const std::uint64_t mask = (~std::uint64_t{0} >> (64 - (end - begin))) << (begin % 64);
       std::atomic_ref<std::uint64_t> word(bits[row * words_per_row_ + begin / 64]);
-      fresh += std::popcount(mask & ~word.fetch_or(mask, std::memory_order_acq_rel));
+      std::uint64_t newly = mask & ~word.fetch_or(mask, std::memory_order_acq_rel);
+      fresh += std::popcount(newly);
+      if (odd.empty()) newly = 0;
+      for (; newly != 0; newly &= newly - 1) {
+        const std::int64_t column = begin / 64 * 64 + std::countr_zero(newly);
+        seen.add(odd[static_cast<std::size_t>((row - y) * width + column - x)]);
+      }
       begin = end;
     }
   }
   if (fresh == 0) return;
   if (seen != PixelStatistics{}) {
     const std::lock_guard lock(statistics_mutex_);
-    statistics_ += seen;
+    statistics_.not_a_number += seen.not_a_number;
+    statistics_.negative += seen.negative;
+    statistics_.infinite += seen.infinite;
   }
   present_.fetch_add(fresh, std::memory_order_acq_rel);
 }

@@ -42,13 +42,17 @@ struct PixelBlock {
   std::vector<std::span<const float>> layers;
 };
 
+/// What the stored form of a pixel need not tell any more, as bits.
+enum PixelOddity : std::uint8_t { kNotANumber = 1, kNegative = 2, kInfinite = 4 };
+
 /// What was noticed while pixels were converted.
 struct PixelStatistics {
   std::uint64_t not_a_number = 0;  ///< pixels with a channel that is not a number
   std::uint64_t negative = 0;      ///< pixels with a channel below 0
   std::uint64_t infinite = 0;      ///< pixels with an infinite channel
 
-  PixelStatistics& operator+=(const PixelStatistics& other);
+  /// Counts a pixel with these oddities.
+  void add(std::uint8_t oddities);
   bool operator==(const PixelStatistics&) const = default;
 };
 
@@ -58,8 +62,12 @@ struct EncodedBlock {
   std::int64_t x = 0, y = 0, width = 0, height = 0;
   std::vector<std::uint8_t> pixels;        ///< width * height * pixel_size(storage)
   std::vector<std::vector<float>> layers;  ///< as many as the frame buffer has
-  PixelStatistics statistics;
+  /// A sum of PixelOddity for each pixel; empty where no pixel is odd.
+  std::vector<std::uint8_t> odd;
 };
+
+/// The counts of EncodedBlock::odd.
+PixelStatistics count_odd(std::span<const std::uint8_t> odd);
 
 /// Converts a block. Throws std::invalid_argument where the spans do not have the sizes that the block
 /// announces.
@@ -106,6 +114,7 @@ class FrameBuffer {
   bool is_present(std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height) const;
   /// Whether all pixels of a row have arrived.
   bool row_complete(std::int64_t y) const;
+  /// Of the pixels that have arrived, each as it was when it came first.
   PixelStatistics statistics() const;
 
   std::size_t row_bytes() const { return static_cast<std::size_t>(width_) * pixel_size_; }
@@ -124,7 +133,7 @@ class FrameBuffer {
  private:
   void check(std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height) const;
   void mark(std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height,
-            const PixelStatistics& seen);
+            std::span<const std::uint8_t> odd);
   std::uint8_t* pixel(std::int64_t x, std::int64_t y);
   float* layer_pixel(std::size_t layer, std::int64_t x, std::int64_t y);
 

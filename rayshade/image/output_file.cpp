@@ -11,6 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "rayshade/image/directory.h"
+
 namespace rayshade {
 namespace {
 
@@ -29,21 +31,6 @@ void write_fully(int file, const char* data, std::size_t size, const std::string
     data += done;
     size -= static_cast<std::size_t>(done);
   }
-}
-
-/// `path` with the symbolic links of its last component followed, so that the link stays and its target is
-/// replaced.
-std::string follow_links(std::string path) {
-  for (int depth = 0; depth < 40; ++depth) {
-    char link[4096];
-    const ssize_t length = ::readlink(path.c_str(), link, sizeof link);
-    if (length < 0 || length == static_cast<ssize_t>(sizeof link)) return path;
-    const std::string to(link, static_cast<std::size_t>(length));
-    const std::size_t slash = path.rfind('/');
-    path.resize(to.starts_with('/') || slash == std::string::npos ? 0 : slash + 1);
-    path.append(to);
-  }
-  return path;
 }
 
 /// Names of streams that are open already: a rename would tear them off.
@@ -89,14 +76,9 @@ OutputFile::OutputFile(std::string path, Mode mode) : path_(std::move(path)) {
 OutputFile::~OutputFile() { discard(); }
 
 void OutputFile::open_temporary() {
-  const std::size_t slash = target_.rfind('/');
-  const std::size_t name = slash == std::string::npos ? 0 : slash + 1;
-  if (name == target_.size()) fail(path_, EISDIR);
-  const std::string directory = target_.substr(0, name);
-  // File names end at 255 bytes; the hidden one is longer than the final one.
-  const std::string shown = target_.substr(name, 200);
+  if (target_.ends_with('/')) fail(path_, EISDIR);
   for (int attempt = 0; attempt < 1000; ++attempt) {
-    std::string candidate = fmt::format("{}.{}.{}.{}.tmp", directory, shown, ::getpid(), attempt);
+    std::string candidate = temporary_name(target_, attempt);
     file_ = ::open(candidate.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file_ >= 0) {
       temporary_ = std::move(candidate);

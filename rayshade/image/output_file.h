@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A file that appears under its name only when it is whole.
 //
-// Bytes go to a hidden file beside the target (".NAME.PID.N.tmp"), which commit() renames; without commit()
-// it disappears with the object. Standard output ("-"), pipes and devices cannot be renamed and are written
-// directly. A full disk is an error with its reason, at the write or at the latest in commit().
+// Bytes go to a hidden file beside the target (directory.h: temporary_name), which commit() renames; without
+// commit() it disappears with the object. Standard output ("-"), pipes and devices cannot be renamed and are
+// written directly. A full disk is an error with its reason, at the write or at the latest in commit().
 #pragma once
 
 #include <cstdint>

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "rayshade/image/frame_buffer.h"
+#include "rayshade/render/block_feed.h"
 
 namespace rayshade {
 
@@ -29,6 +29,8 @@ struct FrameJob {
   /// Told of every finished block before the picture gets it, from any thread, never by two at once; may be
   /// empty.
   std::function<void(const EncodedBlock&)> keep = {};
+  /// Told what it took, in the same way.
+  std::function<void(const Block&, const BlockCost&)> cost = {};
 };
 
 }  // namespace rayshade

@@ -10,18 +10,38 @@
 #include <cerrno>
 #include <cstring>
 
+#include "rayshade/image/directory.h"
+#include "rayshade/scene/hash128.h"
+
 namespace rayshade {
 namespace {
 
 /// Blocks of finished frames are dropped once they are so many bytes: small frames never pay for it.
 constexpr std::uint64_t kDropAtOnce = 1 << 20;
+/// Larger texts of scenes are recorded as hashes of their lines: they would be larger than many a picture.
+constexpr std::size_t kLargestText = 256 << 10;
 
 std::string reason() { return std::strerror(errno); }
+
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return line;
+}
+
+std::uint64_t line_hash(std::string_view line) { return hash128(line).first; }
 
 std::string identity_record(const JournalIdentity& identity) {
   RecordWriter out(RecordKind::kIdentity);
   out.text(identity.scene_hash);
-  out.text(identity.scene_text);
+  const bool as_text = identity.scene_text.size() <= kLargestText;
+  out.text(as_text ? std::string_view(identity.scene_text) : std::string_view());
+  std::vector<std::uint64_t> lines;
+  for (std::string_view text = as_text ? std::string_view() : identity.scene_text; !text.empty();)
+    lines.push_back(line_hash(take_line(text)));
+  out.number(std::uint64_t{lines.size()});
+  for (const std::uint64_t hash : lines) out.number(hash);
   for (const auto& [name, value] : identity.values) {
     out.text(name);
     out.text(value);
@@ -34,6 +54,9 @@ std::optional<JournalIdentity> read_identity(std::string_view payload) {
   JournalIdentity out;
   out.scene_hash = in.text();
   out.scene_text = in.text();
+  const auto lines = in.number<std::uint64_t>();
+  if (lines > in.rest().size() / sizeof(std::uint64_t)) return {};
+  for (std::uint64_t i = 0; i < lines; ++i) out.scene_lines.push_back(in.number<std::uint64_t>());
   while (in.ok() && !in.rest().empty()) {
     const std::string_view name = in.text();
     out.values.emplace_back(name, in.text());
@@ -49,17 +72,23 @@ std::string frame_record(int frame, std::uint64_t file_bytes) {
   return out.seal();
 }
 
-std::string_view take_line(std::string_view& text) {
-  const std::size_t end = std::min(text.find('\n'), text.size());
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  return line;
-}
-
 std::string quoted(std::string_view line) {
   constexpr std::size_t kLongest = 100;
   return line.size() <= kLongest ? fmt::format("'{}'", line)
                                  : fmt::format("'{} ...'", line.substr(0, kLongest));
+}
+
+/// Where only hashes of the lines are known of what was.
+std::string line_difference(const std::vector<std::uint64_t>& was, std::string_view now) {
+  std::size_t i = 0;
+  for (; i < was.size() && !now.empty(); ++i)
+    if (const std::string_view line = take_line(now); line_hash(line) != was[i])
+      return fmt::format("the scene has changed, first in its line {} that is now {}", i + 1, quoted(line));
+  if (i < was.size())
+    return fmt::format("the scene has changed: the last {} of its {} lines are gone", was.size() - i,
+                       was.size());
+  if (!now.empty()) return fmt::format("the scene has changed: {} is new", quoted(take_line(now)));
+  return "the scene has changed";
 }
 
 std::string scene_difference(std::string_view was, std::string_view now) {
@@ -107,6 +136,8 @@ std::string first_difference(const JournalIdentity& was, const JournalIdentity& 
   }
   for (const auto& [name, before] : was.values)
     if (!value(now, name)) return fmt::format("{} was {}, is now not set", name, before);
+  if (was.scene_hash != now.scene_hash && !was.scene_lines.empty() && !now.scene_text.empty())
+    return line_difference(was.scene_lines, now.scene_text);
   if (was.scene_hash != now.scene_hash) return scene_difference(was.scene_text, now.scene_text);
   return {};
 }
@@ -232,13 +263,19 @@ void Journal::begin() {
   if (ftruncate(file_, 0) != 0 || !write_all(file_, first, 0))
     throw JournalError(fmt::format("cannot write the journal '{}': {}", path_, reason()));
   size_ = first.size();
-  unsynced_ = true;
+  unsynced_ = unsynced_name_ = true;
+  drop_unused_rewrite();
 }
 
 void Journal::go_on() {
   if (ftruncate(file_, static_cast<off_t>(size_)) != 0)
     throw JournalError(fmt::format("cannot write the journal '{}': {}", path_, reason()));
+  unsynced_name_ = true;  // its first run may have had no time for that
+  drop_unused_rewrite();
 }
+
+/// A process killed within rewrite() leaves the new file behind. Whoever holds the lock may remove it.
+void Journal::drop_unused_rewrite() { unlink(other_path().c_str()); }
 
 std::int64_t Journal::load(int frame, FrameBuffer& picture) const {
   std::int64_t blocks = 0;
@@ -315,7 +352,7 @@ void Journal::finish_frame(int frame, std::uint64_t file_bytes) noexcept {
 /// The journal without the blocks of finished frames, in a new file that takes the old one's place.
 void Journal::rewrite() {
   if (!blocks_.empty()) return;  // of a later frame, recorded by an earlier run: its turn comes
-  const std::string other = path_ + ".new";
+  const std::string other = other_path();
   std::string bytes = identity_record(identity_);
   for (const auto& [frame, size] : finished_) bytes += frame_record(frame, size);
   const int file = open(other.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -329,6 +366,7 @@ void Journal::rewrite() {
   close(file_);
   file_ = file;
   size_ = bytes.size();
+  unsynced_name_ = true;
 }
 
 void Journal::sync() noexcept {
@@ -336,6 +374,8 @@ void Journal::sync() noexcept {
     const std::lock_guard lock(mutex_);
     if (failure_.empty()) fail(reason());
   }
+  // A file whose name is lost with the power is lost. Some file systems cannot sync folders: no failure.
+  if (unsynced_name_.exchange(false)) sync_directory_of(path_);
 }
 
 std::string Journal::failure() const {

@@ -6,7 +6,7 @@
 // finished blocks and frames. Each is one write, so that a killed process loses none that it finished; what
 // a power cut may lose is bounded by sync(). A torn or damaged record is noticed and passed over, all whole
 // ones are used. Each pixel is recorded once; the blocks of frames whose pictures are written are dropped:
-// the file is no larger than the pictures still to be written, plus about 70 bytes a block and a mebibyte.
+// the file is no larger than the pictures still to be written, plus about 70 bytes a block and two mebibytes.
 #pragma once
 
 #include <atomic>
@@ -28,10 +28,12 @@ namespace rayshade {
 /// What determines the pixels of a rendering.
 struct JournalIdentity {
   std::string scene_hash;
-  /// The scene's canonical text, to tell what changed in it; empty where it is too large to be kept.
+  /// The scene's canonical text, to tell what changed in it; empty where it is too large for that.
   std::string scene_text;
   /// Names and values of all else: "samples" and "3".
   std::vector<std::pair<std::string, std::string>> values;
+  /// Of an identity read from a journal: a hash of each line of a text too large to be kept in it.
+  std::vector<std::uint64_t> scene_lines = {};
 };
 
 /// The first thing that changed, for people ("samples was 2, is now 4"); empty where nothing did.
@@ -102,6 +104,8 @@ class Journal {
   void append(const std::string& record);
   void fail(const std::string& reason);
   void rewrite();
+  void drop_unused_rewrite();
+  std::string other_path() const { return path_ + ".new"; }
   std::string read(std::uint64_t offset, std::uint64_t length) const;
 
   std::string path_;
@@ -117,7 +121,8 @@ class Journal {
   std::multimap<int, Place> blocks_;
   std::map<int, std::uint64_t> finished_;
   std::atomic<bool> unsynced_{false};
-  mutable std::mutex mutex_;  ///< of appending and failure_
+  std::atomic<bool> unsynced_name_{false};  ///< of the folder's entry
+  mutable std::mutex mutex_;                ///< of appending and failure_
   std::string failure_;
 };
 

@@ -22,10 +22,11 @@ std::optional<Block> PictureFeed::next() {
   return blocks_[i];
 }
 
-void PictureFeed::finished(const Block&, EncodedBlock&& pixels, const BlockCost&) {
-  if (job_.keep) {
+void PictureFeed::finished(const Block& block, EncodedBlock&& pixels, const BlockCost& cost) {
+  if (job_.keep || job_.cost) {
     const std::lock_guard lock(mutex_);
-    job_.keep(pixels);
+    if (job_.keep) job_.keep(pixels);
+    if (job_.cost) job_.cost(block, cost);
   }
   job_.picture.put(pixels);
   const std::lock_guard lock(mutex_);

@@ -6,9 +6,9 @@
 namespace rayshade {
 namespace {
 
-/// Scenes of more nodes are kept as a hash only: their text would be larger than many a picture.
-constexpr std::size_t kNodesKeptAsText = 2'000;
-constexpr std::size_t kLargestText = 256 << 10;
+/// Of larger scenes only the hash is compared: their texts would take memory and time.
+constexpr std::size_t kMostNodes = 50'000;
+constexpr std::size_t kLargestText = 4 << 20;
 
 std::string words(const Vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 std::string words(const Color& c) { return fmt::format("{} {} {}", c.r, c.g, c.b); }
@@ -28,7 +28,7 @@ const char* storage_name(PixelStorage storage) {
 }
 
 std::string scene_text(const Scene& scene) {
-  if (scene.nodes.size() > kNodesKeptAsText) return {};
+  if (scene.nodes.size() > kMostNodes) return {};
   std::string text = canonical_text(scene);
   return text.size() > kLargestText ? std::string() : text;
 }

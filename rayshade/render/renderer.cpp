@@ -150,7 +150,6 @@ bool Renderer::render_frame(const FrameJob& job) {
   const int width = settings_.window_width(), height = settings_.window_height();
   PictureFeed feed(job, options_.block_side > 0 ? options_.block_side
                                                 : default_block_side(width, height, options_.threads));
-  const PixelStatistics before = picture.statistics();
   if (feed.missing() > 0) {
     const int threads = static_cast<int>(std::min<std::int64_t>(options_.threads, feed.missing()));
     const std::unique_ptr<FrameCrew> crew = start_frame(job.frame, format_of(picture), feed, threads);
@@ -160,15 +159,15 @@ bool Renderer::render_frame(const FrameJob& job) {
     }
     finish_frame(*crew);
   }
-  count_frame(picture, before, seconds_since(start));
+  count_frame(picture, seconds_since(start));
   return picture.complete();
 }
 
-void Renderer::count_frame(const FrameBuffer& picture, const PixelStatistics& before, double seconds) {
+void Renderer::count_frame(const FrameBuffer& picture, double seconds) {
   statistics_.render_seconds += seconds;
   const PixelStatistics seen = picture.statistics();
-  statistics_.nan_pixels += seen.not_a_number - before.not_a_number;
-  statistics_.negative_pixels += seen.negative - before.negative;
+  statistics_.nan_pixels += seen.not_a_number;
+  statistics_.negative_pixels += seen.negative;
   statistics_.frames += picture.complete();
 }
 

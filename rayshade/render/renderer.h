@@ -64,8 +64,8 @@ class Renderer {
                                          int threads);
   /// After the feed has ended: waits for the crew. Throws RenderError.
   void finish_frame(FrameCrew& crew);
-  /// Counts a frame that took so many seconds; `before`: what had been seen in the picture by then.
-  void count_frame(const FrameBuffer& picture, const PixelStatistics& before, double seconds);
+  /// Counts a frame that took so many seconds.
+  void count_frame(const FrameBuffer& picture, double seconds);
   /// The ray tree of one pixel as text.
   std::string explain(int frame, int x, int y);
 

@@ -37,6 +37,7 @@ struct RenderStatistics {
   std::vector<std::string> light_names;  ///< of ClassReport::light
   VerifyCounts verify;
   double verify_share = 0;  ///< of queries that were asked again of brute force
+  /// In the pictures of this run's frames, whoever rendered their pixels: earlier runs, other ranks.
   std::uint64_t nan_pixels = 0, negative_pixels = 0;
   std::uint64_t peak_tree_nodes = 0;
   double compile_seconds = 0;  ///< wall clock

@@ -57,6 +57,12 @@ Bytes read_all(int fd, std::size_t limit) {
 }  // namespace
 
 Bytes FileProvider::read(const std::string& name) {
+  Bytes bytes = read_file(name);
+  bytes_read_.fetch_add(bytes->size(), std::memory_order_relaxed);
+  return bytes;
+}
+
+Bytes FileProvider::read_file(const std::string& name) {
   if (name == "-") {
     const std::lock_guard lock(mutex_);
     if (!standard_input_) standard_input_ = read_all(STDIN_FILENO, limit_);

@@ -3,7 +3,9 @@
 // tests and fuzzers feed memory, and a cluster sends recorded bytes.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -33,8 +35,13 @@ class FileProvider : public Provider {
  public:
   explicit FileProvider(std::size_t limit = std::size_t{8} << 30) : limit_(limit) {}
   Bytes read(const std::string& name) override;
+  /// Of all files so far.
+  std::uint64_t bytes_read() const { return bytes_read_.load(std::memory_order_relaxed); }
 
  private:
+  Bytes read_file(const std::string& name);
+
+  std::atomic<std::uint64_t> bytes_read_{0};
   std::size_t limit_;
   std::mutex mutex_;
   Bytes standard_input_;  ///< guarded by mutex_

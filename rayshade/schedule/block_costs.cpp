@@ -115,6 +115,7 @@ std::string format_block_costs(const BlockCosts& costs) {
   line("tree-fixed-seconds", shortest(costs.tree_fixed_seconds));
   line("tree-region-seconds", shortest(costs.tree_region_seconds));
   line("scene-bytes", std::to_string(costs.scene_bytes));
+  line("compile-seconds", shortest(costs.compile_seconds));
   line("result-bytes-per-pixel", shortest(costs.result_bytes_per_pixel));
   line("blocks", std::to_string(costs.blocks.size()));
   for (std::size_t i = 0; i < costs.blocks.size(); ++i) {
@@ -154,6 +155,8 @@ BlockCosts parse_block_costs(std::string_view text, const std::string& name) {
       costs.tree_region_seconds = reader.number<double>(value, 0, 1e9, "tree-region-seconds");
     else if (key == "scene-bytes")
       costs.scene_bytes = reader.number<std::uint64_t>(value, 0, std::uint64_t{1} << 50, "scene-bytes");
+    else if (key == "compile-seconds")
+      costs.compile_seconds = reader.number<double>(value, 0, 1e9, "compile-seconds");
     else if (key == "result-bytes-per-pixel")
       costs.result_bytes_per_pixel = reader.number<double>(value, 0, 1e6, "result-bytes-per-pixel");
     else if (key == "blocks")

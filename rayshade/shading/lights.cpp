@@ -101,30 +101,6 @@ double spot_factor(const ShadingLight& light, double x) {
   return fn::pow(x, light.exponent) * ramp;
 }
 
-Illumination illuminate(const ShadingLight& light, const Vec3& point, double xi, double zeta) {
-  Illumination out;
-  out.color = light.intensity;
-  if (light.kind == LightKind::kDirectional) {
-    out.direction = light.position;
-    return out;
-  }
-  Vec3 place = light.position;
-  if (light.kind == LightKind::kArea) place = place + xi * light.edge_u + zeta * light.edge_v;
-  const Vec3 toward = place - point;
-  out.distance = length(toward);
-  if (!(out.distance > 0)) {
-    out.reaches = false;
-    return out;
-  }
-  out.direction = toward / out.distance;
-  if (light.kind == LightKind::kSpot) {
-    const double factor = spot_factor(light, -dot(light.axis, out.direction));
-    out.reaches = factor != 0;
-    out.color *= factor;
-  }
-  return out;
-}
-
 Vec3 extended_target(const ShadingLight& light, const Vec3& point, int sample_number, int side, double xi,
                      double zeta) {
   const Vec3 center = light.position - point;

@@ -36,6 +36,9 @@ std::string light_name(const std::vector<ShadingLight>& lights, std::size_t ligh
 /// The class of the shadow rays toward a light, for the intersector.
 RayClass shadow_class(const ShadingLight& light);
 
+/// The spot factor of shading.md 4.1 for x = cosine of the angle off the axis.
+double spot_factor(const ShadingLight& light, double x);
+
 /// How a light stands to a point before shadows: unit direction from the point, distance (kFar for
 /// directional), and the colour that arrives (intensity times spot factor).
 struct Illumination {
@@ -46,10 +49,29 @@ struct Illumination {
 };
 
 /// `xi`, `zeta`: uniform in [0,1), used by area lights only (shading.md 4.3 with FIX 5).
-Illumination illuminate(const ShadingLight& light, const Vec3& point, double xi, double zeta);
-
-/// The spot factor of shading.md 4.1 for x = cosine of the angle off the axis.
-double spot_factor(const ShadingLight& light, double x);
+inline Illumination illuminate(const ShadingLight& light, const Vec3& point, double xi, double zeta) {
+  Illumination out;
+  out.color = light.intensity;
+  if (light.kind == LightKind::kDirectional) {
+    out.direction = light.position;
+    return out;
+  }
+  Vec3 place = light.position;
+  if (light.kind == LightKind::kArea) place = place + xi * light.edge_u + zeta * light.edge_v;
+  const Vec3 toward = place - point;
+  out.distance = length(toward);
+  if (!(out.distance > 0)) {
+    out.reaches = false;
+    return out;
+  }
+  out.direction = toward / out.distance;
+  if (light.kind == LightKind::kSpot) {
+    const double factor = spot_factor(light, -dot(light.axis, out.direction));
+    out.reaches = factor != 0;
+    out.color *= factor;
+  }
+  return out;
+}
 
 /// The point of an extended light toward which the shadow ray of a sample goes, relative to the shaded point
 /// (shading.md 4.2): stratified over `side` x `side` cells by the sample number.

@@ -62,7 +62,7 @@ class Job {
   }
   /// Waits until so many ranks run. Returns them.
   std::vector<pid_t> wait_for_ranks(std::size_t count) const {
-    for (int i = 0; i < 5000; ++i) {
+    for (int i = 0; i < 30'000 * kTimeFactor; ++i) {
       if (const auto found = ranks(); found.size() >= count) return found;
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }

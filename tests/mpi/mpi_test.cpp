@@ -101,19 +101,19 @@ TEST_F(MpiTest, ErrorsEndTheWholeJobAtOnce) {
   write_file(folder() / "bad.ray", "sphere nonsense\n");
   {
     Job job(folder(), on_ranks(4), "-O out.ppm bad.ray");
-    const Outcome out = job.wait(20);
+    const Outcome out = job.wait(40);
     EXPECT_EQ(out.status, 1);
     EXPECT_THAT(out.err, HasSubstr("bad.ray:1:"));
     EXPECT_THAT(out.err, Not(HasSubstr("rank")));
   }
   {
     Job job(folder(), on_ranks(3), "--nonsense scene.ray");
-    const Outcome out = job.wait(20);
+    const Outcome out = job.wait(40);
     EXPECT_EQ(out.status, 2);
     EXPECT_THAT(out.err, HasSubstr("Try 'pafas --help'"));
   }
   Job job(folder(), on_ranks(3), "--help");
-  const Outcome out = job.wait(20);
+  const Outcome out = job.wait(40);
   EXPECT_EQ(out.status, 0);
   EXPECT_THAT(out.out, HasSubstr("--schedule"));
 }
@@ -157,10 +157,15 @@ TEST_F(MpiTest, KilledSlavesCostNothingButTheirWork) {
     std::vector<pid_t> ranks = job.wait_for_ranks(5);
     ASSERT_EQ(ranks.size(), 5u);
     // A rank that dies while MPI starts takes the others along. Once the master has begun a journal, all have
-    // started; the scene is not yet sent then.
-    while (!std::filesystem::exists(folder() / "out.ppm.journal") && job.running())
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 600));
+    // started; the scene is not yet sent then. From there to the half of the picture, as the journal tells on
+    // a machine of any speed.
+    const std::uintmax_t far = 1 + random() % (160 * 120 * 4 / 2);
+    const auto recorded = [this] {
+      std::error_code none;
+      const std::uintmax_t bytes = std::filesystem::file_size(folder() / "out.ppm.journal", none);
+      return none ? 0 : bytes;
+    };
+    while (recorded() < far && job.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ranks.erase(ranks.begin());
     std::shuffle(ranks.begin(), ranks.end(), random);
     for (std::size_t i = 0; i < dead; ++i) kill(ranks[i], SIGKILL);

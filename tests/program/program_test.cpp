@@ -317,7 +317,13 @@ class SignalTest : public ProgramTest {
             nullptr);
       _exit(127);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(700 * kTimeFactor));
+    // Signals are taken from before the first block on.
+    std::error_code none;
+    for (int i = 0; i < 60'000 * kTimeFactor; ++i) {
+      const std::uintmax_t recorded = fs::file_size(path("slow.png.journal"), none);
+      if (!none && recorded > 10'000) break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     return child;
   }
   int wait_for(pid_t child) {

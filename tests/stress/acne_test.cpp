@@ -165,7 +165,9 @@ class Trial {
     counts.acne += wrong;
     if (subject_.closed && down && at.entering) {
       ++counts.into;
-      counts.leaks += !met.found;
+      // Beside an edge, the far side may be nearer than where the ray begins.
+      const Vec3 deeper = at.point + too_near_ * scale_ * direction;
+      counts.leaks += !met.found && nearest(*world_, {deeper, direction}, scratch_, 0).found;
     }
   }
   bool flat() const {

@@ -397,7 +397,7 @@ void all_shapes(const std::string& name, int shapes) {
                {box.lo, box.hi, {box.lo.x, box.hi.y, .5 * (box.lo.z + box.hi.z)}}};
     return std::pair{b.box(box.lo, box.hi), quad::Box(box)};
   });
-  report.run("plane", {4, 4}, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
+  report.run("plane", {4, 10}, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
     const double s = any_scale(dice);
     const shape::Plane plane{place(dice, s), dice.direction()};
     subject = {plane.point, s, 1, {}};

@@ -207,7 +207,7 @@ TEST(BeamTree, IsGrownByManyThreadsAtOnce) {
 
 TEST(Choice, LeavesATreeThatIsSlowerAloneAndComesBack) {
   using Way = Choice::Way;
-  Choice choice(1e6, 1000);
+  Choice choice(1e6, 1e6);
   std::size_t through_tree = 0, rays = 0;
   const auto run = [&](double tree, double hierarchy, int groups) {
     through_tree = rays = 0;
@@ -226,11 +226,32 @@ TEST(Choice, LeavesATreeThatIsSlowerAloneAndComesBack) {
   // It is given another try, more and more seldom.
   EXPECT_GT(run(400, 100, 200'000), 0);
   EXPECT_LT(run(400, 100, 200'000), 0.05);
-  // Where primitives are as many as rays, it waits.
-  Choice crowded(1e6, 1e6);
+  // Where primitives are as many as rays, making a tree cannot pay, unless rays are costly; and not any more
+  // where most rays have come.
+  Choice crowded(1e6, 1e9);
   EXPECT_EQ(crowded.next(64), Way::kHierarchy);
+  crowded.plain(64, 64 * 100);
+  EXPECT_EQ(crowded.next(64), Way::kHierarchy);
+  Choice costly(1e6, 1e9);
+  costly.plain(64, 64 * 10'000);
+  EXPECT_NE(costly.next(64), Way::kHierarchy);
+  Choice early(1e6, 1e7), late(1e6, 1e7);
+  for (Choice* each : {&early, &late}) each->plain(64, 64 * 100);
+  EXPECT_NE(early.next(64), Way::kHierarchy);
+  EXPECT_EQ(late.next(900'000), Way::kHierarchy);
+  // What has been made is paid for: near the end a tree is kept for what its rays cost from now on.
+  Choice sunk(1e5, 2.5e6);
+  for (int i = 0; i < 1500; ++i) {
+    const Way way = sunk.next(64);
+    ASSERT_NE(way, Way::kHierarchy) << i;
+    const std::uint64_t making = i < 40 ? 64 * 1000 : 0;
+    sunk.built(64, making);
+    if (way == Way::kBoth)
+      sunk.compared(32, 32 * 60 + 0.5 * static_cast<double>(making), 32 * 100,
+                    0.5 * static_cast<double>(making));
+  }
   // Building that never ends counts, too.
-  Choice slow(1e4, 1000);
+  Choice slow(1e4, 0);
   int left = 0;
   for (int i = 0; i < 2000; ++i) {
     const Way way = slow.next(64);

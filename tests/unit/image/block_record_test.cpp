@@ -28,7 +28,10 @@ EncodedBlock random_block(std::mt19937& random, PixelStorage storage, std::size_
   out.layers.resize(layers);
   for (std::vector<float>& layer : out.layers)
     for (std::size_t i = 0; i < pixels; ++i) layer.push_back(static_cast<float>(random()) - 1e9F);
-  out.statistics = {random(), random(), std::uint64_t{random()} << 32};
+  if (random() % 2 == 0) {
+    for (std::size_t i = 0; i < pixels; ++i) out.odd.push_back(static_cast<std::uint8_t>(random() & 7));
+    out.odd.back() = kNegative;
+  }
   return out;
 }
 
@@ -39,7 +42,7 @@ void expect_same(const EncodedBlock& a, const EncodedBlock& b) {
   EXPECT_EQ(a.height, b.height);
   EXPECT_EQ(a.pixels, b.pixels);
   EXPECT_EQ(a.layers, b.layers);
-  EXPECT_EQ(a.statistics, b.statistics);
+  EXPECT_EQ(a.odd, b.odd);
 }
 
 TEST(BlockRecord, ComesBackAsItWent) {
@@ -57,8 +60,10 @@ TEST(BlockRecord, ComesBackAsItWent) {
       EXPECT_EQ(back->frame, frame);
       EXPECT_EQ(back->storage, storage);
       expect_same(back->block, block);
-      EXPECT_LE(record.size(), 80 + static_cast<std::size_t>(block.width * block.height) *
-                                        recorded_pixel_size(storage, block.layers.size()));
+      EXPECT_LE(record.size(), 80 +
+                                   static_cast<std::size_t>(block.width * block.height) *
+                                       recorded_pixel_size(storage, block.layers.size()) +
+                                   block.odd.size());
     }
   }
 }
@@ -173,6 +178,9 @@ TEST(BlockRecord, RefusesBlocksThatAreNotWhatTheyAnnounce) {
   block.layers.resize(1);
   EXPECT_THROW(encode_block_record(0, block, PixelStorage::kByte), std::invalid_argument);
   block.layers.clear();
+  block.odd.assign(3, kNegative);
+  EXPECT_THROW(encode_block_record(0, block, PixelStorage::kByte), std::invalid_argument);
+  block.odd.clear();
   block.x = -1;
   EXPECT_THROW(encode_block_record(0, block, PixelStorage::kByte), std::invalid_argument);
 }
@@ -183,6 +191,8 @@ TEST(BlockRecord, CutsArePartsOfTheBlock) {
   block.width = block.height = 4;
   block.pixels.resize(16 * 8);
   for (auto& layer : block.layers) layer.assign(16, 0);
+  block.odd.assign(16, 0);
+  block.odd[10] = kNegative;
   for (std::size_t i = 0; i < 16; ++i) {
     block.layers[1][i] = static_cast<float>(i);
     block.pixels[8 * i + 3] = static_cast<std::uint8_t>(i);
@@ -192,6 +202,8 @@ TEST(BlockRecord, CutsArePartsOfTheBlock) {
   ASSERT_EQ(cut.pixels.size(), 32U);
   EXPECT_EQ(cut.pixels[3], 9);
   EXPECT_EQ(cut.pixels[27], 14);
+  EXPECT_EQ(cut.odd, (std::vector<std::uint8_t>{0, kNegative, 0, 0}));
+  EXPECT_TRUE(cut_block(block, PixelStorage::kWord, block.x, block.y, 4, 2).odd.empty());
   EXPECT_THROW(cut_block(block, PixelStorage::kWord, block.x + 3, block.y, 2, 1), std::invalid_argument);
 }
 

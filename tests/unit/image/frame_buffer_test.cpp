@@ -186,6 +186,20 @@ TEST(FrameBuffer, CountsOddPixelsOnce) {
   EXPECT_EQ(buffer.statistics(), (PixelStatistics{1, 2, 1}));
 }
 
+TEST(FrameBuffer, CountsOddPixelsOnceWhereBlocksOverlap) {
+  FrameBuffer buffer(options(200, 40));
+  const auto negative = [](std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height) {
+    const std::vector<double> rgba(static_cast<std::size_t>(4 * width * height), -1);
+    return encode_block({x, y, width, height, rgba, {}}, PixelStorage::kByte, ColorEncoder(ColorEncoding{}));
+  };
+  for (const std::int64_t x : {50, 0, 100, 90})
+    for (const std::int64_t y : {0, 13}) buffer.put(negative(x, y, 100, 20));
+  EXPECT_EQ(buffer.statistics().negative, 200U * 33);
+  EncodedBlock wrong = negative(0, 0, 4, 4);
+  wrong.odd.pop_back();
+  EXPECT_THROW(buffer.put(wrong), std::invalid_argument);
+}
+
 TEST(FrameBuffer, RefusesWhatDoesNotFit) {
   FrameBuffer buffer(options(10, 10));
   const std::vector<double> four(16, 0.5);

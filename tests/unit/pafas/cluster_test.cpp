@@ -21,6 +21,9 @@ using ::testing::HasSubstr;
 using testing_tools::read_file;
 using testing_tools::write_file;
 
+/// What takes a while takes longer under a sanitizer: nobody shall seem dead only because of that.
+constexpr int kSlowness = testing_tools::kSanitized ? 4 : 1;
+
 constexpr const char* kScene = R"(screen 96 64 sample 2 eyep 0 -9 2 lookp 0 0 0 fov 40
 light 1 point 4 -6 7
 light .4 directional -1 -1 2
@@ -40,12 +43,12 @@ class ClusterTest : public ::testing::Test {
     write_file(path("balls.inc"), balls);
     write_file(path("scene.ray"), kScene);
     // Includes are relative to the including file.
-    timing_.alive = .05;
-    timing_.ask_again = .2;
-    timing_.hold = .05;
-    timing_.patience = 3;
-    timing_.silence = .5;
-    timing_.reports = 2;
+    timing_.alive = .05 * kSlowness;
+    timing_.ask_again = .2 * kSlowness;
+    timing_.hold = .05 * kSlowness;
+    timing_.patience = 3 * kSlowness;
+    timing_.silence = .5 * kSlowness;
+    timing_.reports = 4 * kSlowness;
   }
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
   std::vector<std::string> arguments(const std::string& picture, std::vector<std::string> more) const {
@@ -148,7 +151,7 @@ TEST_F(ClusterTest, TheDeadAreReplacedAndNamed) {
   for (int round = 0; round < 4; ++round) {
     Network network(5);
     const int dead = 1 + static_cast<int>(random() % 4);
-    const auto after = std::chrono::milliseconds(random() % 300);
+    const auto after = std::chrono::milliseconds(random() % (300U * kSlowness));
     const std::string picture = together(5, {"-S", "6", "--block", "8"}, network, [&] {
       std::this_thread::sleep_for(after);
       for (int rank = 1; rank <= dead; ++rank) network.kill(rank);
@@ -162,9 +165,9 @@ TEST_F(ClusterTest, WhoComesBackIsWelcome) {
   const std::string expected = alone({"-S", "8"});
   Network network(2);
   const std::string picture = together(2, {"-S", "8", "--block", "8", "--dedicated-master"}, network, [&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    std::this_thread::sleep_for(std::chrono::milliseconds(150 * kSlowness));
     network.kill(1);
-    std::this_thread::sleep_for(std::chrono::milliseconds(900));
+    std::this_thread::sleep_for(std::chrono::milliseconds(900 * kSlowness));  // more than `silence`
     network.revive(1);
   });
   EXPECT_EQ(picture, expected);

@@ -3,12 +3,26 @@
 #include "rayshade/render/journal.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
+
+namespace {
+std::atomic<int> folders_synced = 0;
+}  // namespace
+
+// In the place of the C library's: counts the folders.
+extern "C" int fsync(int file) {
+  struct stat info {};
+  if (fstat(file, &info) == 0 && S_ISDIR(info.st_mode)) ++folders_synced;
+  return static_cast<int>(syscall(SYS_fsync, file));
+}
 
 namespace rayshade {
 namespace {
@@ -33,7 +47,16 @@ EncodedBlock block_at(std::int64_t x, std::int64_t y, std::int64_t width, std::i
     for (std::int64_t u = x; u < x + width; ++u)
       for (const std::int64_t byte : {u, v, u ^ v, std::int64_t{255}})
         out.pixels.push_back(static_cast<std::uint8_t>(byte));
+  // Above the line of row 9 every third column is below zero.
+  for (std::int64_t v = y; v < y + height && y < 9; ++v)
+    for (std::int64_t u = x; u < x + width; ++u) out.odd.push_back(v < 9 && u % 3 == 0 ? kNegative : 0);
+  if (count_odd(out.odd) == PixelStatistics{}) out.odd.clear();
   return out;
+}
+
+std::int64_t pixels_of(std::string_view payload) {
+  const auto record = decode_block_payload(payload, 1 << 20);
+  return record ? record->block.width * record->block.height : 0;
 }
 
 class JournalTest : public ::testing::Test {
@@ -170,7 +193,8 @@ TEST_F(JournalTest, AnyRectanglesAreRecordedPixelByPixelOnce) {
   std::uint64_t recorded = 0;
   const std::string content = bytes();
   for (std::string_view rest = content; const auto record = open_record(rest);) {
-    if (record->kind == RecordKind::kBlock) recorded += record->payload.size() - 48;
+    if (record->kind == RecordKind::kBlock)
+      recorded += 4 * static_cast<std::size_t>(pixels_of(record->payload));
     rest.remove_prefix(record->size);
   }
   EXPECT_EQ(recorded, 4U * static_cast<unsigned>(picture.present()));
@@ -178,6 +202,8 @@ TEST_F(JournalTest, AnyRectanglesAreRecordedPixelByPixelOnce) {
   Journal journal(path, identity, back);
   journal.load(0, back);
   EXPECT_EQ(back.present(), picture.present());
+  EXPECT_EQ(back.statistics(), picture.statistics());
+  EXPECT_GT(back.statistics().negative, 0U);
   expect_right(back);
 }
 
@@ -201,6 +227,76 @@ TEST_F(JournalTest, TellsWhatChanged) {
               now.scene_text = "screen 8 8\nsphere 2 0 0 0\n";
             }),
             "the scene has changed: 'sphere 1 0 0 0' is now 'sphere 2 0 0 0'");
+}
+
+TEST_F(JournalTest, LinesOfLargeScenesAreCompared) {
+  // Above what is kept as text.
+  std::vector<std::string> lines;
+  for (int i = 0; i < 20'000; ++i) lines.push_back("sphere 1 0 0 " + std::to_string(i));
+  const auto joined = [](const std::vector<std::string>& all) {
+    std::string text;
+    for (const std::string& line : all) text += line + "\n";
+    return text;
+  };
+  identity.scene_text = joined(lines);
+  const FrameBuffer picture(small(8, 8));
+  {
+    Journal journal(path, identity, picture);
+    journal.begin();
+  }
+  EXPECT_LT(fs::file_size(path), 8U * 20'000 + 1000);
+  const auto changed = [&](auto change) {
+    std::vector<std::string> now = lines;
+    change(now);
+    JournalIdentity other = identity;
+    other.scene_text = joined(now);
+    other.scene_hash = "x";
+    return Journal(path, other, picture).difference();
+  };
+  EXPECT_EQ(Journal(path, identity, picture).found(), Journal::Found::kSame);
+  EXPECT_EQ(changed([](auto& now) { now[12'344] = "box"; }),
+            "the scene has changed, first in its line 12345 that is now 'box'");
+  EXPECT_EQ(changed([](auto& now) { now.emplace_back("box"); }), "the scene has changed: 'box' is new");
+  EXPECT_EQ(changed([](auto& now) { now.resize(19'990); }),
+            "the scene has changed: the last 10 of its 20000 lines are gone");
+  EXPECT_EQ(changed([](auto& now) { now.clear(); }), "the scene has changed");
+}
+
+TEST_F(JournalTest, ItsNameIsOnTheDiskToo) {
+  const auto synced_by = [](auto&& what) {
+    const int before = folders_synced;
+    what();
+    return folders_synced - before;
+  };
+  FrameBuffer picture(small(512, 512));
+  {
+    Journal journal(path, identity, picture);
+    journal.begin();
+    EXPECT_EQ(synced_by([&] { journal.sync(); }), 1);
+    journal.record(0, picture, block_at(0, 0, 512, 512));
+    EXPECT_EQ(synced_by([&] { journal.sync(); }), 0);
+    journal.finish_frame(0, 1);  // a new file
+    EXPECT_EQ(synced_by([&] { journal.sync(); }), 1);
+    EXPECT_EQ(synced_by([&] { journal.sync(); }), 0);
+  }
+  Journal journal(path, identity, picture);
+  journal.go_on();
+  EXPECT_EQ(synced_by([&] { journal.sync(); }), 1);
+}
+
+TEST_F(JournalTest, TheNewFileOfAKilledProcessIsRemoved) {
+  const FrameBuffer picture(small(8, 8));
+  const std::string half = path.string() + ".new";
+  for (const bool first : {true, false}) {
+    std::ofstream(half) << "half";
+    Journal journal(path, identity, picture);
+    EXPECT_TRUE(fs::exists(half));
+    if (first)
+      journal.begin();
+    else
+      journal.go_on();
+    EXPECT_FALSE(fs::exists(half));
+  }
 }
 
 TEST_F(JournalTest, BlocksOfFinishedFramesAreDropped) {

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+// The lights of a batch of hits: which matter, the shadow rays they need, and their sum (shading.md 2.4, 4).
+#include <algorithm>
+
+#include "rayshade/math/functions.h"
+#include "rayshade/sampling/random.h"
+#include "rayshade/shading/ray_tree_records.h"
+
+namespace rayshade {
+namespace {
+
+/// Scenes of so few leaves have their transparent shadows walked at once, through all leaves.
+constexpr std::uint32_t kFewLeaves = 16;
+
+/// The exponent, where highlights are computed by multiplication: whole ones, which most are (relative error
+/// below exponent ulps, far below what a pixel holds). Otherwise 0.
+unsigned whole_exponent(double exponent) {
+  constexpr int kMost = 256;
+  if (!(exponent > 0 && exponent <= kMost)) return 0;
+  const auto whole = static_cast<unsigned>(exponent);
+  return static_cast<double>(whole) == exponent ? whole : 0;
+}
+
+double power(double base, unsigned exponent) {
+  double out = exponent & 1u ? base : 1;
+  for (double square = base; exponent >>= 1;) {
+    square *= square;
+    if (exponent & 1u) out *= square;
+  }
+  return out;
+}
+
+}  // namespace
+
+/// Sections 2.4 steps 1 and 2 and 4: which lights matter at which hit, and the shadow rays they need.
+void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
+                          std::span<const EyeSample> samples) {
+  lights_.clear();
+  shadow_queries_.clear();
+  shadow_owner_.clear();
+  const RenderSettings& settings = *scene_.settings;
+  const Opacity mask =
+      settings.transparent_shadows && scene_.compiled->has_transparent ? kOpaque : kAnyOpacity;
+  for (std::uint32_t s = 0; s < shade_count_; ++s) {
+    const Shade& shade = shades_[s];
+    const Node& node = nodes_[shade.node];
+    const WorldHit& world = shade.world;
+    const Surface& surface = *shade.surface;
+    const EyeSample& sample = samples[node.root];
+    const bool answers_highlight = surface.specular_exponent >= kEpsilon && !is_black(surface.specular);
+    const bool diffuse_black = is_black(surface.diffuse);
+    for (std::size_t l = first_light; l < last_light; ++l) {
+      const ShadingLight& light = scene_.lights[l];
+      const RandomKey key{settings.seed, scene_.frame, sample.x, sample.y, sample.sample};
+      std::array<double, 2> draws{};
+      if (light.kind == LightKind::kArea) draws = uniform2(key, dimension(node.path, Purpose::kLight, l));
+      const Illumination light_in = illuminate(light, world.point, draws[0], draws[1]);
+      double c = dot(light_in.direction, world.normal);
+      if (world.smooth && c <= 0) {
+        const double geometric = dot(light_in.direction, world.geometric_normal);
+        if (geometric > 0) c = geometric;
+      }
+      const double highlight = dot(shade.mirror, light_in.direction);
+      bool skipped = false;
+      if (!light_in.reaches) {
+        ++counts_.skipped_dark_lights;
+        skipped = true;
+      } else if (c > 0) {
+        if (light.black || (diffuse_black && !(answers_highlight && highlight > 0))) {
+          ++counts_.skipped_dark_lights;
+          skipped = true;
+        }
+      } else if (surface.translucency < kEpsilon) {
+        ++counts_.skipped_back_lights;
+        skipped = true;
+      }
+      if (skipped && !observer_) continue;
+      // Records are made where they stay: copies of fresh ones stall on their own stores.
+      PendingLight& pending = lights_.emplace_back();
+      pending.shade = s;
+      pending.light = static_cast<std::uint32_t>(l);
+      pending.cosine = c;
+      pending.highlight = highlight;
+      pending.color = light_in.color;
+      pending.skipped = skipped;
+      if (skipped) continue;
+      if (!settings.shadows || light.no_shadow || surface.no_shadow) {
+        ++counts_.skipped_unshadowed;
+      } else {
+        ++counts_.shadow_rays;
+        Vec3 direction = light_in.direction;
+        double far = light_in.distance;
+        if (light.kind == LightKind::kExtended) {
+          draws = uniform2(key, dimension(node.path, Purpose::kLight, l));
+          const Vec3 target =
+              extended_target(light, world.point, sample.sample_number, settings.samples, draws[0], draws[1]);
+          far = length(target);
+          direction = target / far;
+        }
+        const RayStart start = shade.starts.toward(direction, 1, true);
+        OcclusionQuery& query = shadow_queries_.emplace_back();
+        query.ray.origin = start.origin;
+        query.ray.direction = direction;
+        query.ray.time = node.ray.time;
+        query.lo = start.lo;
+        query.hi = far;
+        query.mask = mask;
+        query.light = static_cast<std::uint32_t>(l);
+        shadow_owner_.push_back(static_cast<std::uint32_t>(lights_.size() - 1));
+      }
+    }
+  }
+}
+
+void RayTree::answer_shadows(std::span<SampleResult> results) {
+  if (shadow_queries_.empty()) return;
+  if (shadow_answers_.size() < shadow_queries_.size()) shadow_answers_.resize(shadow_queries_.size());
+  const bool walk = scene_.settings->transparent_shadows && scene_.compiled->has_transparent;
+  if (walk && scene_.compiled->groups[0].count <= kFewLeaves) {
+    follow_transparent(true, results);
+    return;
+  }
+  const std::span<OcclusionAnswer> answers(shadow_answers_.data(), shadow_queries_.size());
+  counts_.occlusion_queries += shadow_queries_.size();
+  {
+    const auto sample_of = [&](std::size_t i) {
+      return nodes_[shades_[lights_[shadow_owner_[i]].shade].node].root;
+    };
+    const Owners owners(*this, sample_of);
+    scene_.intersector->occluded(shadow_queries_, answers, scratch_);
+  }
+  for (std::size_t i = 0; i < shadow_queries_.size(); ++i) {
+    PendingLight& pending = lights_[shadow_owner_[i]];
+    SampleResult& result = results[nodes_[shades_[pending.shade].node].root];
+    result.tests += answers[i].tests;
+    result.bounds_tests += answers[i].bounds_tests;
+    pending.blocked = answers[i].occluded;
+    if (pending.blocked) ++counts_.shadow_hits;
+  }
+  if (walk) follow_transparent(false, results);
+}
+
+/// Takes the highlights of the lights that arrive to their exponents, those that need a real power together.
+void RayTree::raise_highlights() {
+  power_bases_.clear();
+  power_exponents_.clear();
+  power_owner_.clear();
+  for (std::uint32_t i = 0; i < lights_.size(); ++i) {
+    PendingLight& pending = lights_[i];
+    if (pending.skipped || pending.blocked) continue;
+    const Surface& surface = *shades_[pending.shade].surface;
+    const bool front = pending.cosine > 0;
+    const double base = front ? pending.highlight : -pending.highlight;
+    const double exponent = front ? surface.specular_exponent : surface.transmitted_exponent;
+    pending.highlight = 0;
+    if (!(exponent >= kEpsilon && base > 0)) continue;
+    pending.highlights = true;
+    if (const unsigned whole = whole_exponent(exponent)) {
+      pending.highlight = power(base, whole);
+      continue;
+    }
+    power_bases_.push_back(base);
+    power_exponents_.push_back(exponent);
+    power_owner_.push_back(i);
+  }
+  if (power_owner_.empty()) return;
+  fn::pow_each(power_bases_.data(), power_exponents_.data(), power_bases_.data(), power_owner_.size());
+  for (std::size_t k = 0; k < power_owner_.size(); ++k) lights_[power_owner_[k]].highlight = power_bases_[k];
+}
+
+/// Section 2.4 steps 3 and 4, in the fixed order of the lights.
+void RayTree::combine_lights() {
+  raise_highlights();
+  for (const PendingLight& pending : lights_) {
+    const Shade& shade = shades_[pending.shade];
+    Node& node = nodes_[shade.node];
+    const Surface& surface = *shade.surface;
+    const Color before = node.color;
+    if (!pending.skipped && !pending.blocked) {
+      if (pending.cosine > 0) {
+        node.color += (surface.diffuse * pending.cosine) * pending.color;
+        if (pending.highlights) node.color += (surface.specular * pending.highlight) * pending.color;
+      } else {
+        node.color += (surface.translucent * -pending.cosine) * pending.color;
+        if (pending.highlights) node.color += (surface.body * pending.highlight) * pending.color;
+        node.color *= surface.translucency;
+      }
+    }
+    if (observer_) {
+      observer_->on_light({shade.node, pending.light, pending.cosine, pending.skipped,
+                           pending.blocked || pending.skipped ? Color{} : pending.color,
+                           node.color - before});
+    }
+  }
+}
+
+}  // namespace rayshade
