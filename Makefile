@@ -16,7 +16,7 @@ LINT_PACKAGES  := clang clang-tidy clang-format libclang-rt-14-dev
 BENCH_CMAKE := cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DRAYSHADE_BENCH=ON
 
 .DEFAULT_GOAL := help
-.PHONY: help run build check check-long asan tsan bench bench-fas bench-scenes bench-paper check-clusters install package lint format fuzz clean \
+.PHONY: help run build check check-long asan tsan stress bench bench-fas bench-scenes bench-paper check-clusters install package lint format fuzz clean \
         packages test-packages bench-packages lint-packages
 
 help: ## list the targets
@@ -71,6 +71,12 @@ asan: test-packages ## the tests under the address and undefined-behaviour sanit
 tsan: test-packages ## the tests under the thread sanitizer
 	cmake --preset tsan && cmake --build --preset tsan -j $(JOBS)
 	ctest --test-dir build-tsan -j $(JOBS) -LE 'long|timing|slurm|mpich' --output-on-failure
+
+# WRITE=--write also puts the tables into docs/accuracy.md; RAYSHADE_STRESS=0.1 in the environment makes a tenth of the rays.
+stress: test-packages ## scales, leaks, self-intersection, the truth of single rays: the long tests, with tables
+	cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=ON
+	cmake --build $(BUILD) -j $(JOBS) --target stress_test
+	bench/run-stress $(BUILD) $(WRITE)
 
 # WRITE=--write also puts the tables of bench-fas and bench-scenes into docs/performance.md.
 bench: bench-packages ## run the benchmarks (speed as ratios within one run)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# Sourced by the scripts beside it: where things are, what they run on, and tables in docs/performance.md.
+# Sourced by the scripts beside it: where things are, what they run on, and tables in docs/.
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 databases=(balls gears mount rings teapot tetra tree)
 
@@ -22,9 +22,9 @@ environment() {
   echo "- $("$1/bin/rayshade" --version | head -1)"
 }
 
-# write_section NAME: puts standard input between the markers of that name in docs/performance.md.
+# write_section NAME [PAGE]: puts standard input between the markers of that name in docs/PAGE (performance.md).
 write_section() {
-  local page=$source/docs/performance.md begin="<!-- $1: begin -->" end="<!-- $1: end -->" text
+  local page=$source/docs/${2:-performance.md} begin="<!-- $1: begin -->" end="<!-- $1: end -->" text
   grep -qxF "$begin" "$page" && grep -qxF "$end" "$page" || fail "no markers '$1' in $page"
   text=$(mktemp) && cat > "$text"
   awk -v begin="$begin" -v end="$end" -v text="$text" '

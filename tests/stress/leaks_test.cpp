@@ -15,6 +15,8 @@ namespace {
 using test::Dice;
 using test::SceneBuilder;
 
+constexpr std::size_t kSpan = 4096;
+
 struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> faces;
@@ -82,7 +84,6 @@ std::uint64_t shoot(const Mesh& mesh, const Place& place, std::uint64_t rays, Di
   const auto scene = b.compile();
   const auto world = make_hierarchy(*scene);
   TraceScratch scratch;
-  constexpr std::size_t kSpan = 4096;
   std::vector<NearestQuery> queries(kSpan);
   std::vector<NearestAnswer> answers(kSpan);
   std::vector<OcclusionQuery> shadows(kSpan);
@@ -117,7 +118,8 @@ std::uint64_t shoot(const Mesh& mesh, const Place& place, std::uint64_t rays, Di
   return leaks;
 }
 
-void run(const std::string& name, int levels, std::uint64_t rays) {
+void run(const std::string& name, int levels, std::uint64_t at_least) {
+  const std::uint64_t rays = (at_least + kSpan - 1) / kSpan * kSpan;
   constexpr std::uint64_t kSeed = 99;
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));
   Dice dice(kSeed);
@@ -135,7 +137,7 @@ void run(const std::string& name, int levels, std::uint64_t rays) {
 TEST(LeaksTest, ClosedMeshesHold) { run("leaks-short", 6, std::uint64_t{1} << 15); }
 
 // More than a hundred million rays in all, through two million triangles.
-TEST(LeaksTest, DISABLED_ClosedMeshesHoldLong) { run("leaks", 9, std::uint64_t{17} << 20); }
+TEST(LeaksTest, DISABLED_ClosedMeshesHoldLong) { run("leaks", 9, scaled_count(17e6)); }
 
 }  // namespace
 }  // namespace rayshade::stress

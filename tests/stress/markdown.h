@@ -3,6 +3,7 @@
 // variable RAYSHADE_TABLES names a folder (bench/run-accuracy puts them into docs/accuracy.md).
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -16,6 +17,13 @@ std::string format(const char* pattern, Arguments... arguments) {
   char text[400];
   std::snprintf(text, sizeof text, pattern, arguments...);
   return text;
+}
+
+/// `count` of the long versions times the environment variable RAYSHADE_STRESS, for a quick look or a long
+/// night.
+inline std::uint64_t scaled_count(double count) {
+  const char* factor = std::getenv("RAYSHADE_STRESS");
+  return static_cast<std::uint64_t>(count * (factor ? std::atof(factor) : 1)) + 1;
 }
 
 class Table {

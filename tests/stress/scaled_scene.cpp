@@ -51,7 +51,7 @@ class Writer {
 std::string objects(const Writer& w) {
   std::string t;
   const auto line = [&](const std::string& text) { t += text + "\n"; };
-  line("difference");  // a floor with dents
+  line("difference");  // a floor with holes
   line("  plane floor" + w.at({0, 0, 0}) + " 0 0 1");
   line("  list");
   line("    sphere blue" + w.sphere(.5, {-.7, -2.7, .1}));
@@ -59,10 +59,6 @@ std::string objects(const Writer& w) {
   line("  end");
   line("end");
   line("plane white" + w.at({0, 14, 0}) + " 0 -1 0");
-  line("intersect");  // a wedge
-  line("  plane blue" + w.at({0, 3.4, .15}) + " 0 0 1");
-  line("  plane green" + w.at({0, 3.4, 0}) + " 0 -1 .1");
-  line("end");
   line("sphere red" + w.sphere(.8, {-3, -1, .8}) + " texture stripe white .3 0 map uv scale .25 .25 1");
   line("sphere mirror" + w.sphere(.6, {-1.4, -2.2, .6}));
   line("sphere glass" + w.sphere(.5, {.2, -3, .5}));

@@ -3,6 +3,7 @@
 // class: of an eye, toward lights at a point or in a direction, and others. The long variant is ten million
 // rays in two hundred scenes; it runs in the tests with the label `long`.
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include "rayshade/geometry/intersector.h"
 #include "tests/unit/geometry/wild_scene.h"
@@ -44,9 +45,16 @@ struct Totals {
 /// One scene with its eye, its lights, and the intersectors that must agree.
 class Trial {
  public:
-  Trial(std::uint64_t seed, Totals& totals) : seed_(seed), random_(seed), totals_(totals) {
+  enum class World { kWild, kExtreme };
+
+  Trial(std::uint64_t seed, Totals& totals, World world = World::kWild)
+      : seed_(seed), random_(seed), totals_(totals) {
     random_.motion = seed % 3 == 0;
-    random_.fill_wildly(6 + random_.dice.below(80), kHalf);
+    if (world == World::kWild) {
+      random_.fill_wildly(6 + random_.dice.below(80), kHalf);
+    } else {
+      random_.fill_extremely(seed, 20 + random_.dice.below(400), kHalf);
+    }
     const double scale = seed % 5 == 0 ? random_.any_size(1e-6, 1e6) : 1;
     const Vec3 shift = seed % 7 == 0 ? random_.any_size(1, 1e6) * random_.dice.direction() : Vec3{};
     outward_ = then(scaling({scale, scale, scale}), translation(scale * shift));
@@ -318,10 +326,11 @@ class Trial {
   std::size_t turn_ = 0;
 };
 
-Totals run(std::uint64_t first_seed, int scenes, int rays_per_scene) {
+Totals run(std::uint64_t first_seed, int scenes, int rays_per_scene,
+           Trial::World world = Trial::World::kWild) {
   Totals totals;
   for (int i = 0; i < scenes && testing::Test::HasFailure() == false; ++i)
-    Trial(first_seed + static_cast<std::uint64_t>(i), totals).passes(rays_per_scene);
+    Trial(first_seed + static_cast<std::uint64_t>(i), totals, world).passes(rays_per_scene);
   testing::Test::RecordProperty("rays", std::to_string(totals.rays + totals.shadow_rays));
   std::printf(
       "%llu rays (%llu hits), %llu shadow rays (%llu occluded); trees answered %llu, left %llu, split %llu\n",
@@ -347,9 +356,55 @@ TEST(Identity, IntersectorsGiveTheSameBits) {
   EXPECT_GT(totals.nothing_else, totals.shadow_rays / 16);
 }
 
+/// Sizes over twelve powers of ten with planes among them, or all objects in one place, or all boxes flat.
+TEST(Identity, ExtremeWorlds) {
+  const Totals totals = run(50'000, 9, 2'000, Trial::World::kExtreme);
+  if (HasFailure()) return;
+  EXPECT_EQ(totals.rays + totals.shadow_rays, 36'000u);
+  EXPECT_GT(totals.hits, totals.rays / 4);
+  EXPECT_GT(totals.in_trees, totals.rays / 4);
+}
+
+/// On every instruction set: brute force asks single rays, the others packs and vector code.
+class IdentityOnTarget : public testing::TestWithParam<std::int64_t> {
+ protected:
+  void SetUp() override {
+    hwy::SetSupportedTargetsForTest(GetParam());
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+  void TearDown() override {
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+};
+
+std::vector<std::int64_t> targets() {
+  std::vector<std::int64_t> out;
+  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) out.push_back(left & -left);
+  return out;
+}
+
+TEST_P(IdentityOnTarget, SameBits) {
+  const Totals totals = run(60'000, 3, 1'000);
+  if (!HasFailure()) {
+    EXPECT_GT(totals.hits, totals.rays / 4);
+  }
+  run(70'000, 3, 500, Trial::World::kExtreme);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, IdentityOnTarget, testing::ValuesIn(targets()),
+                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+
 /// Disabled in the daily run; tests/CMakeLists.txt runs it with the label `long`.
 TEST(Identity, DISABLED_TenMillionRays) {
   const Totals totals = run(30'000, 200, 25'000);
+  if (!HasFailure()) {
+    EXPECT_EQ(totals.rays + totals.shadow_rays, 10'000'000u);
+  }
+}
+
+TEST(Identity, DISABLED_ExtremeTenMillionRays) {
+  const Totals totals = run(80'000, 200, 25'000, Trial::World::kExtreme);
   if (!HasFailure()) {
     EXPECT_EQ(totals.rays + totals.shadow_rays, 10'000'000u);
   }

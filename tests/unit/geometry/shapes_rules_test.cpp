@@ -209,9 +209,15 @@ TEST(ShapesBox, ParallelSlabsAreClosedForZerosOfEitherSign) {
     EXPECT_FALSE(hits(box, {{0, std::nextafter(-1.0, -2), 3}, {zero, zero, -1}}));
     EXPECT_EQ(hit_at(box, {{1, 0, 0}, {zero, 0.5, 0}}), 2) << "from within, along a face";
   }
-  EXPECT_TRUE(box.entering({{0, 0, 3}, {0, 0, -1}}, 0, {}));
-  EXPECT_FALSE(box.entering({{0, 0, 3}, {0, 0, -1}}, 2, {})) << "the boundary belongs to the closed box";
-  EXPECT_TRUE(box.entering({{0, 0, 3}, {0, 0, -1}}, 1.999, {}));
+  const auto enters = [&](double lo) {
+    const Ray down{{0, 0, 3}, {0, 0, -1}};
+    ShapeHit hit;
+    EXPECT_TRUE(box.intersect(down, lo, kFar, hit));
+    return box.entering(down, lo, hit);
+  };
+  EXPECT_TRUE(enters(0));
+  EXPECT_FALSE(enters(2)) << "the boundary belongs to the closed box";
+  EXPECT_TRUE(enters(1.999));
 }
 
 TEST(ShapesDisc, RimBelongsToTheDisc) {

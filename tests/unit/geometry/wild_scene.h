@@ -123,6 +123,49 @@ struct WildScene : RandomScene {
     if (dice.below(3) == 0) b.show(b.plane({0, 0, -half}, {0, 0, 1}));
   }
 
+  /// What stresses culling most, one kind at a time: sizes from 1e-8 to 1e4 with planes among them;
+  /// everything in one place; flat things whose boxes have no volume, many of them in the same plane.
+  void fill_extremely(std::uint64_t kind, int objects, double half) {
+    const Vec3 middle = snapped(half);
+    for (int i = 0; i < objects; ++i) {
+      if (kind % 3 == 0) {
+        const double size = any_size(1e-8, 1e4);
+        // The large ones far off, so that they do not hold all that is small.
+        const Vec3 at = marked(in_reach(half) + (size > half ? 1.5 * size : 0) * dice.direction());
+        b.show(decorated(simple(size, at), false));
+        if (dice.below(20) == 0) b.show(decorated(b.plane(at, dice.direction()), false));
+      } else if (kind % 3 == 1) {
+        marked(middle + dice.direction());
+        b.show(decorated(simple(1, middle), false));
+      } else {
+        Vec3 lo = in_reach(half), extent{any_size(1e-3, 3), any_size(1e-3, 3), any_size(1e-3, 3)};
+        const int axis = dice.below(3);
+        extent[axis] = 0;
+        if (dice.below(2)) lo[axis] = middle[axis];
+        if (dice.below(8) == 0) extent[(axis + 1) % 3] = 0;
+        marked(lo + extent), marked(lo + .5 * extent);
+        Vec3 up;
+        up[axis] = 1;
+        b.show(decorated(dice.below(4) ? b.box(lo, lo + extent) : b.disc(max_abs(extent), lo, up), false));
+      }
+    }
+  }
+  Vec3 in_reach(double half) { return dice.below(3) ? place(half) : dice.in_box(half); }
+  NodeId simple(double size, const Vec3& at) {
+    switch (dice.below(5)) {
+      case 0:
+        return b.box(at - size * Vec3{1, 1, 1}, at + size * Vec3{1, 1, 1});
+      case 1:
+        return b.disc(size, at, {0, 0, 1});
+      case 2:
+        return b.cylinder(size, at, at + size * Vec3{0, 0, 1});
+      case 3:
+        return b.triangle(at, at + size * Vec3{1, 0, 0}, at + size * Vec3{0, 1, 0});
+      default:
+        return b.sphere(size, at);
+    }
+  }
+
   double nudged(double x) {
     const int steps = dice.below(9) - 4;
     const double toward =
