@@ -14,6 +14,10 @@ namespace {
 
 /// What a power cut may cost, in seconds of rendering.
 constexpr std::chrono::seconds kBetweenSyncs{5};
+/// The scene's text takes up to ten microseconds a node to make. It is recorded when the run has taken twenty
+/// times as long, so that small pictures of large scenes do not pay for it; at once where that is nothing.
+constexpr std::chrono::microseconds kBeforeScenePerNode{200};
+constexpr std::chrono::milliseconds kAtOnce{20};
 
 /// Pipes and devices cannot be gone on with.
 bool is_file_or_new(const std::string& name) {
@@ -24,7 +28,7 @@ bool is_file_or_new(const std::string& name) {
 }  // namespace
 
 void KeptWork::open(const std::string& name, const std::function<JournalIdentity()>& identity,
-                    const FrameBuffer& picture) {
+                    std::size_t scene_nodes, const FrameBuffer& picture) {
   if (options_.no_journal) return;
   if (name == "-" || !is_file_or_new(name)) {
     if (options_.resume)
@@ -68,6 +72,9 @@ void KeptWork::open(const std::string& name, const std::function<JournalIdentity
         break;
     }
     journal_->begin();
+    const auto before_scene = kBeforeScenePerNode * scene_nodes;
+    scene_due_ = Clock::now() + before_scene;
+    if (before_scene <= kAtOnce) journal_->record_scene();
   } catch (const JournalBusy& error) {
     throw RenderError(error.what(), {});
   } catch (const JournalError& error) {
@@ -98,6 +105,7 @@ std::function<void(const EncodedBlock&)> KeptWork::keeper(int frame, const Frame
 
 void KeptWork::tend(int frame, const FrameBuffer& picture) {
   const Clock::time_point now = Clock::now();
+  if (journal_ && now >= scene_due_) journal_->record_scene();
   if (journal_ && now - synced_ >= kBetweenSyncs) {
     journal_->sync();
     complain_once();
@@ -121,6 +129,7 @@ void KeptWork::tend(int frame, const FrameBuffer& picture) {
 
 void KeptWork::save() {
   if (!journal_) return;
+  journal_->record_scene();
   journal_->sync();
   complain_once();
 }

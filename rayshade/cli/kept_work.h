@@ -23,7 +23,7 @@ class KeptWork {
   /// Opens the journal of the picture of this name, where one is kept. Throws RenderError where -c cannot be
   /// obeyed or another process is at this picture.
   void open(const std::string& picture_name, const std::function<JournalIdentity()>& identity,
-            const FrameBuffer& picture);
+            std::size_t scene_nodes, const FrameBuffer& picture);
 
   /// Whether the file of this frame is written already, by an earlier run.
   bool finished_before(int frame);
@@ -55,7 +55,7 @@ class KeptWork {
   Say say_, note_;
   std::unique_ptr<Journal> journal_;
   bool failure_told_ = false, partial_failed_ = false, resumed_ = false, partial_written_ = false;
-  Clock::time_point synced_ = Clock::now(), partial_due_ = Clock::now();
+  Clock::time_point synced_ = Clock::now(), scene_due_ = synced_, partial_due_ = synced_;
   std::int64_t blocks_ = 0, pixels_ = 0;
   int frames_ = 0;
 };

@@ -220,7 +220,7 @@ class Run {
           return picture_identity(scene_, run_.scene_hash, settings_, format, options_.sample_map,
                                   files.hashes(), RAYSHADE_VERSION);
         },
-        picture);
+        scene_.nodes.size(), picture);
     output.remove_leftovers();
     engine_.begin({options_, settings_, renderer, format, run_.scene_hash});
     Progress progress(report_.get(), {!chatty(), report_.get() == stderr && isatty(STDERR_FILENO) != 0,

@@ -236,17 +236,23 @@ void FrameBuffer::mark(std::int64_t x, std::int64_t y, std::int64_t width, std::
 bool FrameBuffer::is_present(std::int64_t x, std::int64_t y) const { return is_present(x, y, 1, 1); }
 
 bool FrameBuffer::is_present(std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height) const {
+  return present(x, y, width, height) == width * height;
+}
+
+std::int64_t FrameBuffer::present(std::int64_t x, std::int64_t y, std::int64_t width,
+                                  std::int64_t height) const {
   auto* const bits = reinterpret_cast<std::uint64_t*>(present_bits_.data());
+  std::int64_t count = 0;
   for (std::int64_t row = y; row < y + height; ++row) {
     for (std::int64_t begin = x; begin < x + width;) {
       const std::int64_t end = std::min((begin / 64 + 1) * 64, x + width);
       const std::uint64_t mask = (~std::uint64_t{0} >> (64 - (end - begin))) << (begin % 64);
       const std::atomic_ref<std::uint64_t> word(bits[row * words_per_row_ + begin / 64]);
-      if ((word.load(std::memory_order_acquire) & mask) != mask) return false;
+      count += std::popcount(word.load(std::memory_order_acquire) & mask);
       begin = end;
     }
   }
-  return true;
+  return count;
 }
 
 bool FrameBuffer::row_complete(std::int64_t y) const { return is_present(0, y, width_, 1); }

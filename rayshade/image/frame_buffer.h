@@ -110,7 +110,8 @@ class FrameBuffer {
   std::int64_t present() const { return present_.load(std::memory_order_acquire); }
   bool complete() const { return present() == width_ * height_; }
   bool is_present(std::int64_t x, std::int64_t y) const;
-  /// Whether all pixels of a rectangle within the picture have.
+  /// How many pixels of a rectangle within the picture have, and whether all have.
+  std::int64_t present(std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height) const;
   bool is_present(std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height) const;
   /// Whether all pixels of a row have arrived.
   bool row_complete(std::int64_t y) const;

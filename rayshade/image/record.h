@@ -26,6 +26,7 @@ enum class RecordKind : std::uint8_t {
   kBlock = 1,     ///< a finished block (block_record.h)
   kIdentity = 2,  ///< what a journal is of (render/journal.h)
   kFrame = 3,     ///< a finished frame (render/journal.h)
+  kScene = 4,     ///< the text of a scene (render/scene_change.h)
 };
 
 inline constexpr std::size_t kRecordHead = 24;

@@ -11,37 +11,18 @@
 #include <cstring>
 
 #include "rayshade/image/directory.h"
-#include "rayshade/scene/hash128.h"
+#include "rayshade/render/scene_change.h"
 
 namespace rayshade {
 namespace {
 
 /// Blocks of finished frames are dropped once they are so many bytes: small frames never pay for it.
 constexpr std::uint64_t kDropAtOnce = 1 << 20;
-/// Larger texts of scenes are recorded as hashes of their lines: they would be larger than many a picture.
-constexpr std::size_t kLargestText = 256 << 10;
-
 std::string reason() { return std::strerror(errno); }
-
-std::string_view take_line(std::string_view& text) {
-  const std::size_t end = std::min(text.find('\n'), text.size());
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  return line;
-}
-
-std::uint64_t line_hash(std::string_view line) { return hash128(line).first; }
 
 std::string identity_record(const JournalIdentity& identity) {
   RecordWriter out(RecordKind::kIdentity);
   out.text(identity.scene_hash);
-  const bool as_text = identity.scene_text.size() <= kLargestText;
-  out.text(as_text ? std::string_view(identity.scene_text) : std::string_view());
-  std::vector<std::uint64_t> lines;
-  for (std::string_view text = as_text ? std::string_view() : identity.scene_text; !text.empty();)
-    lines.push_back(line_hash(take_line(text)));
-  out.number(std::uint64_t{lines.size()});
-  for (const std::uint64_t hash : lines) out.number(hash);
   for (const auto& [name, value] : identity.values) {
     out.text(name);
     out.text(value);
@@ -53,10 +34,6 @@ std::optional<JournalIdentity> read_identity(std::string_view payload) {
   RecordReader in(payload);
   JournalIdentity out;
   out.scene_hash = in.text();
-  out.scene_text = in.text();
-  const auto lines = in.number<std::uint64_t>();
-  if (lines > in.rest().size() / sizeof(std::uint64_t)) return {};
-  for (std::uint64_t i = 0; i < lines; ++i) out.scene_lines.push_back(in.number<std::uint64_t>());
   while (in.ok() && !in.rest().empty()) {
     const std::string_view name = in.text();
     out.values.emplace_back(name, in.text());
@@ -70,37 +47,6 @@ std::string frame_record(int frame, std::uint64_t file_bytes) {
   out.number(std::int32_t{frame});
   out.number(file_bytes);
   return out.seal();
-}
-
-std::string quoted(std::string_view line) {
-  constexpr std::size_t kLongest = 100;
-  return line.size() <= kLongest ? fmt::format("'{}'", line)
-                                 : fmt::format("'{} ...'", line.substr(0, kLongest));
-}
-
-/// Where only hashes of the lines are known of what was.
-std::string line_difference(const std::vector<std::uint64_t>& was, std::string_view now) {
-  std::size_t i = 0;
-  for (; i < was.size() && !now.empty(); ++i)
-    if (const std::string_view line = take_line(now); line_hash(line) != was[i])
-      return fmt::format("the scene has changed, first in its line {} that is now {}", i + 1, quoted(line));
-  if (i < was.size())
-    return fmt::format("the scene has changed: the last {} of its {} lines are gone", was.size() - i,
-                       was.size());
-  if (!now.empty()) return fmt::format("the scene has changed: {} is new", quoted(take_line(now)));
-  return "the scene has changed";
-}
-
-std::string scene_difference(std::string_view was, std::string_view now) {
-  if (was.empty() || now.empty()) return "the scene has changed";
-  while (!was.empty() && !now.empty()) {
-    const std::string_view before = take_line(was), after = take_line(now);
-    if (before != after)
-      return fmt::format("the scene has changed: {} is now {}", quoted(before), quoted(after));
-  }
-  if (!was.empty()) return fmt::format("the scene has changed: {} is gone", quoted(take_line(was)));
-  if (!now.empty()) return fmt::format("the scene has changed: {} is new", quoted(take_line(now)));
-  return "the scene has changed";
 }
 
 /// Whether the whole file is now locked by this process; true too where the file system has no locks.
@@ -136,9 +82,6 @@ std::string first_difference(const JournalIdentity& was, const JournalIdentity& 
   }
   for (const auto& [name, before] : was.values)
     if (!value(now, name)) return fmt::format("{} was {}, is now not set", name, before);
-  if (was.scene_hash != now.scene_hash && !was.scene_lines.empty() && !now.scene_text.empty())
-    return line_difference(was.scene_lines, now.scene_text);
-  if (was.scene_hash != now.scene_hash) return scene_difference(was.scene_text, now.scene_text);
   return {};
 }
 
@@ -216,8 +159,9 @@ void Journal::scan() {
           const auto was = head->kind == RecordKind::kIdentity ? read_identity(payload) : std::nullopt;
           if (!was) return;
           difference_ = first_difference(*was, identity_);
-          found_ = difference_.empty() ? Found::kSame : Found::kAnother;
-          if (found_ == Found::kAnother) return;
+          found_ =
+              difference_.empty() && was->scene_hash == identity_.scene_hash ? Found::kSame : Found::kAnother;
+          if (!difference_.empty()) return;
         } else {
           take({head->kind, payload, payload.size()}, at + kRecordHead);
         }
@@ -241,9 +185,19 @@ void Journal::scan() {
   }
   damaged_ += size_ - whole_end;
   size_ = whole_end;
+  if (found_ == Found::kAnother) {
+    const std::optional<Record> recorded = open_record(scene_record_);
+    difference_ = recorded && identity_.scene_text
+                      ? scene_difference(recorded->payload, identity_.scene_text())
+                      : "the scene has changed";
+  }
 }
 
 void Journal::take(const Record& record, std::uint64_t offset) {
+  if (record.kind == RecordKind::kScene) {
+    scene_record_ = read(offset - kRecordHead, kRecordHead + record.payload.size());
+    return;
+  }
   RecordReader in(record.payload);
   const int frame = in.number<std::int32_t>();
   if (record.kind == RecordKind::kBlock && !finished_.contains(frame)) {
@@ -259,6 +213,7 @@ void Journal::take(const Record& record, std::uint64_t offset) {
 void Journal::begin() {
   blocks_.clear();
   finished_.clear();
+  scene_record_.clear();
   const std::string first = identity_record(identity_);
   if (ftruncate(file_, 0) != 0 || !write_all(file_, first, 0))
     throw JournalError(fmt::format("cannot write the journal '{}': {}", path_, reason()));
@@ -315,12 +270,9 @@ void Journal::append(const std::string& record) {
 
 void Journal::record(int frame, const FrameBuffer& picture, const EncodedBlock& block) noexcept {
   try {
-    std::vector<std::uint8_t> have(static_cast<std::size_t>(block.width));
-    std::int64_t missing = 0;
-    for (std::int64_t y = block.y; y < block.y + block.height; ++y)
-      for (std::int64_t x = block.x; x < block.x + block.width; ++x) missing += !picture.is_present(x, y);
-    if (missing == block.width * block.height) return append(encode_block_record(frame, block, storage_));
-    if (missing == 0) return;
+    const std::int64_t had = picture.present(block.x, block.y, block.width, block.height);
+    if (had == 0) return append(encode_block_record(frame, block, storage_));
+    if (had == block.width * block.height) return;
     // Rendered in blocks of another size before: the runs of pixels that are new, row by row.
     for (std::int64_t y = block.y; y < block.y + block.height; ++y) {
       for (std::int64_t x = block.x; x < block.x + block.width;) {
@@ -353,7 +305,7 @@ void Journal::finish_frame(int frame, std::uint64_t file_bytes) noexcept {
 void Journal::rewrite() {
   if (!blocks_.empty()) return;  // of a later frame, recorded by an earlier run: its turn comes
   const std::string other = other_path();
-  std::string bytes = identity_record(identity_);
+  std::string bytes = identity_record(identity_) + scene_record_;
   for (const auto& [frame, size] : finished_) bytes += frame_record(frame, size);
   const int file = open(other.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) return;  // the old one is as right, only larger
@@ -367,6 +319,18 @@ void Journal::rewrite() {
   file_ = file;
   size_ = bytes.size();
   unsynced_name_ = true;
+}
+
+void Journal::record_scene() noexcept {
+  if (!scene_record_.empty() || !identity_.scene_text) return;
+  try {
+    scene_record_ = scene_record(identity_.scene_text());
+    identity_.scene_text = {};
+    append(scene_record_);
+  } catch (const std::exception& error) {
+    const std::lock_guard lock(mutex_);
+    if (failure_.empty()) fail(error.what());
+  }
 }
 
 void Journal::sync() noexcept {

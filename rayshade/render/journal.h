@@ -3,14 +3,16 @@
 // of starting again, on any number of threads or ranks and with blocks of any size.
 //
 // A file of sealed records (image/record.h), only ever appended to: first what it is a journal of, then the
-// finished blocks and frames. Each is one write, so that a killed process loses none that it finished; what
-// a power cut may lose is bounded by sync(). A torn or damaged record is noticed and passed over, all whole
-// ones are used. Each pixel is recorded once; the blocks of frames whose pictures are written are dropped:
-// the file is no larger than the pictures still to be written, plus about 70 bytes a block and two mebibytes.
+// finished blocks and frames, and for longer runs the scene's text. Each is one write, so that a killed
+// process loses none that it finished; what a power cut may lose is bounded by sync(). A torn or damaged
+// record is noticed and passed over, all whole ones are used. Each pixel is recorded once; the blocks of
+// frames whose pictures are written are dropped: the file is no larger than the pictures still to be written,
+// plus about 70 bytes a block and two mebibytes.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -28,15 +30,14 @@ namespace rayshade {
 /// What determines the pixels of a rendering.
 struct JournalIdentity {
   std::string scene_hash;
-  /// The scene's canonical text, to tell what changed in it; empty where it is too large for that.
-  std::string scene_text;
   /// Names and values of all else: "samples" and "3".
   std::vector<std::pair<std::string, std::string>> values;
-  /// Of an identity read from a journal: a hash of each line of a text too large to be kept in it.
-  std::vector<std::uint64_t> scene_lines = {};
+  /// Gives the scene's canonical text, to tell what changed in it; empty where it is too large for that. It
+  /// takes as long as a small picture, so it is asked for only when it is needed.
+  std::function<std::string()> scene_text = {};
 };
 
-/// The first thing that changed, for people ("samples was 2, is now 4"); empty where nothing did.
+/// The first value that changed, for people ("samples was 2, is now 4"); empty where none did.
 std::string first_difference(const JournalIdentity& was, const JournalIdentity& now);
 
 /// The journal cannot be opened.
@@ -87,6 +88,9 @@ class Journal {
   /// others record. Never throws.
   void finish_frame(int frame, std::uint64_t file_bytes) noexcept;
 
+  /// Records the scene's text, so that a later run can tell what changed in it; the first time only. Never
+  /// throws.
+  void record_scene() noexcept;
   /// What was recorded is on the disk afterwards. Does nothing where nothing is new.
   void sync() noexcept;
   /// Why nothing is recorded any more ("No space left on device"); empty while all is well.
@@ -120,6 +124,7 @@ class Journal {
   std::uint64_t size_ = 0, damaged_ = 0;
   std::multimap<int, Place> blocks_;
   std::map<int, std::uint64_t> finished_;
+  std::string scene_record_;  ///< as it is in the file; empty where it is not
   std::atomic<bool> unsynced_{false};
   std::atomic<bool> unsynced_name_{false};  ///< of the folder's entry
   mutable std::mutex mutex_;                ///< of appending and failure_

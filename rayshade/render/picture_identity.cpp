@@ -40,7 +40,7 @@ JournalIdentity picture_identity(const Scene& scene, const std::string& scene_ha
                                  const PictureFormat& format, bool sample_map,
                                  const std::map<std::string, std::string>& files,
                                  const std::string& version) {
-  JournalIdentity out{scene_hash, scene_text(scene), {}};
+  JournalIdentity out{scene_hash, {}, [&scene] { return scene_text(scene); }};
   const auto add = [&](const std::string& name, const auto& value) {
     out.values.emplace_back(name, fmt::format("{}", value));
   };

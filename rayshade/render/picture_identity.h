@@ -11,8 +11,8 @@
 
 namespace rayshade {
 
-/// `files`: names and hashes of the files that the scene names. `sample_map`: alpha tells which pixels are
-/// fully sampled.
+/// `scene` outlives the identity. `files`: names and hashes of the files that the scene names. `sample_map`:
+/// alpha tells which pixels are fully sampled.
 JournalIdentity picture_identity(const Scene& scene, const std::string& scene_hash,
                                  const RenderSettings& settings, const PictureFormat& format, bool sample_map,
                                  const std::map<std::string, std::string>& files, const std::string& version);

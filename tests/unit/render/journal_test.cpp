@@ -99,7 +99,8 @@ class JournalTest : public ::testing::Test {
   }
 
   fs::path folder, path;
-  JournalIdentity identity{"abc", "screen 8 8\nsphere 1 0 0 0\n", {{"samples", "2"}, {"seed", "0"}}};
+  JournalIdentity identity{
+      "abc", {{"samples", "2"}, {"seed", "0"}}, [] { return std::string("screen 8 8\nsphere 1 0 0 0\n"); }};
 };
 
 TEST_F(JournalTest, GoesOnFromWhatWasRecorded) {
@@ -222,11 +223,38 @@ TEST_F(JournalTest, TellsWhatChanged) {
   EXPECT_EQ(first_difference(identity, identity), "");
   EXPECT_EQ(changed([](auto& now) { now.values[0].second = "4"; }), "samples was 2, is now 4");
   EXPECT_EQ(changed([](auto& now) { now.values.pop_back(); }), "seed was 0, is now not set");
-  EXPECT_EQ(changed([](auto& now) {
-              now.scene_hash = "x";
-              now.scene_text = "screen 8 8\nsphere 2 0 0 0\n";
-            }),
+}
+
+TEST_F(JournalTest, TellsWhatChangedInTheScene) {
+  const FrameBuffer picture(small(8, 8));
+  JournalIdentity other = identity;
+  other.scene_hash = "x";
+  other.scene_text = [] { return std::string("screen 8 8\nsphere 2 0 0 0\n"); };
+  {
+    Journal journal(path, identity, picture);
+    journal.begin();
+  }
+  EXPECT_EQ(Journal(path, other, picture).found(), Journal::Found::kAnother);
+  EXPECT_EQ(Journal(path, other, picture).difference(), "the scene has changed");
+  {
+    Journal journal(path, identity, picture);
+    journal.go_on();
+    journal.record_scene();
+    journal.record_scene();  // once is enough
+  }
+  const auto size = fs::file_size(path);
+  EXPECT_EQ(Journal(path, other, picture).difference(),
             "the scene has changed: 'sphere 1 0 0 0' is now 'sphere 2 0 0 0'");
+  {
+    // The text is not asked for where it is recorded already.
+    JournalIdentity same = identity;
+    same.scene_text = [] { return std::string("not this"); };
+    Journal journal(path, same, picture);
+    EXPECT_EQ(journal.found(), Journal::Found::kSame);
+    journal.go_on();
+    journal.record_scene();
+  }
+  EXPECT_EQ(fs::file_size(path), size);
 }
 
 TEST_F(JournalTest, LinesOfLargeScenesAreCompared) {
@@ -238,18 +266,19 @@ TEST_F(JournalTest, LinesOfLargeScenesAreCompared) {
     for (const std::string& line : all) text += line + "\n";
     return text;
   };
-  identity.scene_text = joined(lines);
+  identity.scene_text = [&] { return joined(lines); };
   const FrameBuffer picture(small(8, 8));
   {
     Journal journal(path, identity, picture);
     journal.begin();
+    journal.record_scene();
   }
   EXPECT_LT(fs::file_size(path), 8U * 20'000 + 1000);
   const auto changed = [&](auto change) {
     std::vector<std::string> now = lines;
     change(now);
     JournalIdentity other = identity;
-    other.scene_text = joined(now);
+    other.scene_text = [&] { return joined(now); };
     other.scene_hash = "x";
     return Journal(path, other, picture).difference();
   };
