@@ -12,6 +12,7 @@
 
 #include "pafas/estimate.h"
 #include "rayshade/cli/program.h"
+#include "rayshade/image/block_record.h"
 #include "rayshade/image/output_file.h"
 
 namespace pafas {
@@ -52,8 +53,9 @@ void Master::begin(const EnginePlan& plan) {
                       report_.height),
           {});
   }
-  if (alone()) return;
+  if (alone()) return files_.forget();
   package_ = files_.package();
+  files_.forget();
   report_.package_bytes = package_.size();
   plan_ = {{}, options_.arguments, plan.scene_hash, plan.format, package_.size()};
   planned_ = true;
@@ -120,10 +122,10 @@ void Master::handle(const Message& message) {
       return;
     }
     case Kind::kResults: {
-      auto results = unpack<Results>(message.bytes);
+      const auto results = unpack<Results>(message.bytes);
       note_clock(results.sent);
       rank.phase = Phase::kWorking;
-      take_results(from, std::move(results));
+      take_results(from, results);
       return;
     }
     case Kind::kAlive:
@@ -184,7 +186,7 @@ void Master::lose(int number, Phase phase, const std::string& why) {
   rank.phase = phase;
   row.outcome = why;
   ++report_.lost_ranks;
-  if (book_) book_->lost(number);
+  if (book_) book_->lost(worker_of(number));
   fmt::print(stderr, "pafas: rank {}{}: {}; its work goes to others\n", number,
              row.host.empty() ? "" : " on " + row.host, why);
 }
@@ -219,11 +221,14 @@ bool Master::render_frame(Renderer& renderer, const FrameJob& job) {
   options.schedule = cluster.schedule;
   options.starts = cluster.start;
   options.granularity = cluster.granularity;
-  options.workers = transport_.size();
+  options.workers = transport_.size() - (dedicated_ ? 1 : 0);
   options.block_side = run_options_->block;
   book_ = std::make_unique<WorkBook>(static_cast<int>(picture.width()), static_cast<int>(picture.height()),
                                      options);
   report_.schedule = book_->schedule_name();
+  for (std::size_t i = 1; i < ranks_.size(); ++i)
+    if (ranks_[i].phase == Phase::kLost || ranks_[i].phase == Phase::kFailed)
+      book_->lost(worker_of(static_cast<int>(i)));
   for (std::int64_t i = 0; i < book_->count(); ++i) {
     const Block block = book_->block(i);
     if (picture.is_present(block.x, block.y, block.width, block.height)) book_->skip(i);
@@ -285,50 +290,65 @@ FrameProgress Master::progress() {
   return progress_;
 }
 
-void Master::take_results(int rank, Results results) {
-  for (Result& result : results.results) take_result(rank, results.frame, std::move(result));
+void Master::take_results(int rank, const Results& results) {
+  const double offset = report_.rows[static_cast<std::size_t>(rank)].clock_offset;
+  for (const Result& result : results.results) {
+    BlockSpan span{rank, results.frame, {}, result.begin + offset, result.end + offset, false};
+    // A frame that is done, of which others brought this block first.
+    if (!book_ || results.frame != job_->frame) {
+      note_repeated(span);
+      continue;
+    }
+    if (result.number < 0 || result.number >= book_->count()) throw ArchiveError("a result of no block");
+    span.block = book_->block(result.number);
+    const PictureFormat& format = plan_.format;
+    const std::optional<BlockRecord> record =
+        decode_block_record(result.record, static_cast<std::uint64_t>(span.block.pixels()) *
+                                               recorded_pixel_size(format.storage, format.layers.size()));
+    if (!record || record->frame != results.frame || record->storage != format.storage)
+      throw ArchiveError("a result that is no block of this picture");
+    take_block(span, result.cpu_seconds, record->block);
+  }
   if (results.wants_work) ranks_[static_cast<std::size_t>(rank)].wants_work = true;
 }
 
-bool Master::take_result(int rank, int frame, Result result) {
-  RankRow& row = report_.rows[static_cast<std::size_t>(rank)];
-  const double offset = rank == 0 ? 0 : row.clock_offset;
-  BlockSpan span{rank, frame, {}, result.begin + offset, result.end + offset, false};
-  if (book_ && frame == job_->frame && result.number >= 0 && result.number < book_->count()) {
-    span.block = book_->block(result.number);
-    const EncodedBlock& pixels = result.pixels;
-    if (pixels.x != span.block.x || pixels.y != span.block.y || pixels.width != span.block.width ||
-        pixels.height != span.block.height)
-      throw ArchiveError("a result of another block than it says");
-    span.counted = book_->finished(result.number, rank, result.cpu_seconds, seconds_now());
-    if (span.counted) {
-      if (job_->keep) job_->keep(pixels);
-      if (job_->cost) job_->cost(span.block, {result.cpu_seconds});
-      job_->picture.put(pixels);
-      ++progress_.blocks_done;
-      ++row.blocks;
-      row.render_seconds += result.cpu_seconds;
-    }
+void Master::take_own_results() {
+  for (const QueueFeed::Finished& f : feed_->take_finished()) {
+    ++report_.rows[0].report.blocks;
+    take_block({0, job_->frame, f.block, f.begin, f.end, false}, f.cost.seconds, f.pixels);
   }
-  report_.repeated_blocks += !span.counted;
-  report_.spans.push_back(span);
-  return span.counted;
 }
 
-void Master::take_own_results() {
-  for (QueueFeed::Finished& f : feed_->take_finished()) {
-    ++report_.rows[0].report.blocks;
-    take_result(0, job_->frame, {f.block.number, f.begin, f.end, f.cost.seconds, std::move(f.pixels)});
-  }
+void Master::take_block(BlockSpan span, double cpu_seconds, const EncodedBlock& pixels) {
+  const Block& block = span.block;
+  if (pixels.x != block.x || pixels.y != block.y || pixels.width != block.width ||
+      pixels.height != block.height)
+    throw ArchiveError("a result of another block than it says");
+  span.counted = book_->finished(block.number, worker_of(span.rank), cpu_seconds, seconds_now());
+  if (!span.counted) return note_repeated(span);
+  if (job_->keep) job_->keep(pixels);
+  if (job_->cost) job_->cost(block, {cpu_seconds});
+  job_->picture.put(pixels);
+  ++progress_.blocks_done;
+  RankRow& row = report_.rows[static_cast<std::size_t>(span.rank)];
+  ++row.blocks;
+  row.render_seconds += cpu_seconds;
+  report_.spans.push_back(span);
+}
+
+void Master::note_repeated(const BlockSpan& span) {
+  ++report_.repeated_blocks;
+  report_.spans.push_back(span);
 }
 
 void Master::give_work() {
-  if (!dedicated_ && feed_->state().queued == 0) feed_->add(book_->take(0, threads_, seconds_now()));
+  if (!dedicated_ && feed_->state().queued == 0)
+    feed_->add(book_->take(worker_of(0), threads_, seconds_now()));
   for (std::size_t i = 1; i < ranks_.size(); ++i) {
     Rank& rank = ranks_[i];
     if (rank.phase != Phase::kWorking || !rank.wants_work) continue;
     const int threads = static_cast<int>(report_.rows[i].report.threads);
-    std::vector<Block> blocks = book_->take(static_cast<int>(i), threads, seconds_now());
+    std::vector<Block> blocks = book_->take(worker_of(static_cast<int>(i)), threads, seconds_now());
     if (blocks.empty()) continue;
     rank.wants_work = false;
     tell(static_cast<int>(i), Work{job_->frame, std::move(blocks)});

@@ -61,6 +61,8 @@ class Master final : public rayshade::Engine {
   };
 
   bool alone() const { return transport_.size() == 1; }
+  /// The number of a rank among those that render.
+  int worker_of(int rank) const { return dedicated_ ? rank - 1 : rank; }
   template <class M>
   void tell(int rank, const M& message) {
     transport_.send(rank, pack(message));
@@ -69,9 +71,11 @@ class Master final : public rayshade::Engine {
   void handle(const Message& message);
   void greet(int rank, const Hello& hello);
   void send_pieces(int rank, const Pull& pull);
-  void take_results(int rank, Results results);
+  void take_results(int rank, const Results& results);
   void take_own_results();
-  bool take_result(int rank, int frame, Result result);
+  void take_result(int rank, const Result& result);
+  void take_block(BlockSpan span, double cpu_seconds, const rayshade::EncodedBlock& pixels);
+  void note_repeated(const BlockSpan& span);
   void give_work();
   void give_own_work();
   void watch();

@@ -28,7 +28,6 @@
 
 #include "pafas/archive.h"
 #include "pafas/rank_report.h"
-#include "rayshade/image/frame_buffer.h"
 #include "rayshade/render/frame_crew.h"
 #include "rayshade/schedule/block_grid.h"
 
@@ -91,10 +90,8 @@ struct Ready {
 
 struct Work {
   static constexpr Kind kKind = Kind::kWork;
-  /// So many blocks still make a small message.
-  static constexpr std::size_t kMostBlocks = 150;
   std::int32_t frame = 0;
-  std::vector<rayshade::Block> blocks;
+  std::vector<rayshade::Block> blocks;  ///< at most rayshade::kMostBlocksPerMessage
 };
 
 struct Result {
@@ -102,7 +99,7 @@ struct Result {
   double begin = 0;         ///< seconds on the slave's clock
   double end = 0;
   double cpu_seconds = 0;
-  rayshade::EncodedBlock pixels;
+  std::string record;  ///< frame and pixels, as a journal has them: rayshade/image/block_record.h
 };
 
 struct Results {
@@ -164,7 +161,7 @@ void fields(Archive& a, Work& m) {
 }
 template <class Archive>
 void fields(Archive& a, Result& m) {
-  a(m.number, m.begin, m.end, m.cpu_seconds, m.pixels);
+  a(m.number, m.begin, m.end, m.cpu_seconds, m.record);
 }
 template <class Archive>
 void fields(Archive& a, Results& m) {
@@ -217,10 +214,6 @@ namespace rayshade {
 template <class Archive>
 void fields(Archive& a, Block& b) {
   a(b.number, b.x, b.y, b.width, b.height);
-}
-template <class Archive>
-void fields(Archive& a, EncodedBlock& b) {
-  a(b.x, b.y, b.width, b.height, b.pixels, b.layers, b.odd);
 }
 
 }  // namespace rayshade

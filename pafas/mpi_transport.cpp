@@ -67,7 +67,6 @@ MpiTransport::~MpiTransport() {
 void MpiTransport::send(int to, std::string bytes) {
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw std::length_error("a message of more than 2 GB");
-  clear_sent();
   auto sending = std::make_unique<Sending>();
   sending->to = to;
   sending->bytes = std::move(bytes);

@@ -99,6 +99,11 @@ std::string RecordingProvider::package() const {
   return to_bytes(Package{plain.size(), compressed(plain)});
 }
 
+void RecordingProvider::forget() {
+  const std::lock_guard lock(mutex_);
+  read_.clear();
+}
+
 void unpack_files(std::string_view bytes, rayshade::MemoryProvider& into) {
   const auto package = from_bytes<Package>(bytes);
   for (File& file : from_bytes<std::vector<File>>(restored(package.compressed, package.size)))

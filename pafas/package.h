@@ -19,6 +19,8 @@ class RecordingProvider final : public rayshade::Provider {
   rayshade::Bytes read(const std::string& name) override;
   /// All files read so far as compressed bytes (zlib).
   std::string package() const;
+  /// Lets go of them: they are as large as the scene.
+  void forget();
 
  private:
   rayshade::FileProvider files_;

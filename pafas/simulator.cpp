@@ -82,7 +82,7 @@ WorkBookOptions book_options(const SimulatorOptions& o) {
   out.schedule = o.schedule;
   out.starts = o.starts;
   out.granularity = o.granularity;
-  out.workers = o.ranks;
+  out.workers = o.dedicated_master && o.ranks > 1 ? o.ranks - 1 : o.ranks;
   out.block_side = o.block_side;
   out.most_copies = o.most_copies;
   return out;
@@ -100,6 +100,10 @@ class Simulation {
     events_.push(std::move(event));
   }
   Rank& rank(int number) { return ranks_[static_cast<std::size_t>(number)]; }
+  /// As the master counts those that render.
+  int worker_of(int number) const {
+    return options_.dedicated_master && options_.ranks > 1 ? number - 1 : number;
+  }
   double transfer(double bytes) const { return options_.latency_seconds + bytes / options_.bytes_per_second; }
 
   void start_ranks();
@@ -283,7 +287,7 @@ void Simulation::handle(Event&& event) {
       return;
     case What::kLoss:
       it.lost = true;
-      book_.lost(event.rank);
+      book_.lost(worker_of(event.rank));
       ask_waiting();
       return;
   }
@@ -291,7 +295,7 @@ void Simulation::handle(Event&& event) {
 
 void Simulation::take_results(int number, const std::vector<Result>& results, double time) {
   for (const Result& result : results) {
-    if (book_.finished(result.number, number, result.seconds, time))
+    if (book_.finished(result.number, worker_of(number), result.seconds, time))
       end_ = std::max(end_, time);
     else
       rank(number).wasted += result.seconds;
@@ -302,10 +306,10 @@ bool Simulation::give(int number, double time) {
   if (rank(number).lost) return true;  // nothing is owed to it any more
   if (rank(number).dead) {
     // The master does not know; what it gives is lost until it does.
-    book_.take(number, 1, time);
+    book_.take(worker_of(number), 1, time);
     return true;
   }
-  std::vector<Block> blocks = book_.take(number, 1, time);
+  std::vector<Block> blocks = book_.take(worker_of(number), 1, time);
   if (blocks.empty()) return false;
   double arrival = time;
   if (number > 0) {

@@ -13,6 +13,7 @@
 #include "pafas/package.h"
 #include "pafas/run_report.h"
 #include "rayshade/cli/program.h"
+#include "rayshade/image/block_record.h"
 #include "rayshade/lang/parse.h"
 #include "rayshade/scene/scene.h"
 #include "rayshade/schedule/granularity.h"
@@ -246,7 +247,8 @@ void Worker::collect_results() {
   for (QueueFeed::Finished& f : feed_->take_finished()) {
     if (results_.empty()) oldest_result_ = f.end;
     ++report_.blocks;
-    results_.push_back({f.block.number, f.begin, f.end, f.cost.seconds, std::move(f.pixels)});
+    results_.push_back({f.block.number, f.begin, f.end, f.cost.seconds,
+                        encode_block_record(frame_, f.pixels, plan_->format.storage)});
   }
   const QueueFeed::State state = feed_->state();
   const bool idle = state.queued == 0 && state.rendered == 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "rayshade/cli/options.h"
+#include "rayshade/schedule/granularity.h"
 
 namespace rayshade {
 namespace {
@@ -51,7 +52,9 @@ std::vector<OptionSpec> cluster_option_table() {
        {"N"},
        kCluster,
        "Blocks per message at most; messages have fewer toward the end. 0 (the default): chosen.",
-       [](Options& o, Values v) { o.cluster.granularity = parse_int(v[0], "--granularity", 0, 150); }},
+       [](Options& o, Values v) {
+         o.cluster.granularity = parse_int(v[0], "--granularity", 0, kMostBlocksPerMessage);
+       }},
       {0,
        "dedicated-master",
        {},

@@ -14,8 +14,6 @@ constexpr double kMostSeconds = 2;
 /// Of the master, for an answer; with less work in a message than all workers' answers take, they would
 /// queue.
 constexpr double kAnswerSeconds = 20e-6;
-/// What one message of the protocol holds.
-constexpr int kMostBlocks = 150;
 /// While nothing is known of costs.
 constexpr int kFirstBlocks = 4;
 
@@ -23,9 +21,9 @@ constexpr int kFirstBlocks = 4;
 
 MessageSize message_size(const MessageQuestion& q) {
   const int threads = std::max(1, q.threads);
-  int most = q.most_blocks > 0 ? std::min(q.most_blocks, kMostBlocks) : kMostBlocks;
+  int most = q.most_blocks > 0 ? std::min(q.most_blocks, kMostBlocksPerMessage) : kMostBlocksPerMessage;
   if (q.seconds_left <= 0) most = std::min(most, kFirstBlocks * threads);
-  most = std::max(most, std::min(threads, kMostBlocks));
+  most = std::max(most, std::min(threads, kMostBlocksPerMessage));
   const double part = q.share / kMessages;
   double blocks = std::ceil(static_cast<double>(q.blocks_left) * part);
   double seconds = kMostSeconds;

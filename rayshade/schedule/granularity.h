@@ -7,6 +7,9 @@
 
 namespace rayshade {
 
+/// What one message of the protocol holds and is still small enough to be sent at once.
+inline constexpr int kMostBlocksPerMessage = 150;
+
 /// So many blocks at most, and no more than go on being expected to take so many seconds of the worker; one
 /// block for each of its threads always.
 struct MessageSize {
