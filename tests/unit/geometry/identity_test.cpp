@@ -3,9 +3,9 @@
 // class: of an eye, toward lights at a point or in a direction, and others. The long variant is ten million
 // rays in two hundred scenes; it runs in the tests with the label `long`.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include "rayshade/geometry/intersector.h"
+#include "tests/unit/fas/targets.h"
 #include "tests/unit/geometry/wild_scene.h"
 
 namespace rayshade {
@@ -366,23 +366,7 @@ TEST(Identity, ExtremeWorlds) {
 }
 
 /// On every instruction set: brute force asks single rays, the others packs and vector code.
-class IdentityOnTarget : public testing::TestWithParam<std::int64_t> {
- protected:
-  void SetUp() override {
-    hwy::SetSupportedTargetsForTest(GetParam());
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  void TearDown() override {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
-std::vector<std::int64_t> targets() {
-  std::vector<std::int64_t> out;
-  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) out.push_back(left & -left);
-  return out;
-}
+using IdentityOnTarget = fas::test::TargetTest;
 
 TEST_P(IdentityOnTarget, SameBits) {
   const Totals totals = run(60'000, 3, 1'000);
@@ -392,8 +376,8 @@ TEST_P(IdentityOnTarget, SameBits) {
   run(70'000, 3, 500, Trial::World::kExtreme);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, IdentityOnTarget, testing::ValuesIn(targets()),
-                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+INSTANTIATE_TEST_SUITE_P(All, IdentityOnTarget, testing::ValuesIn(fas::test::targets()),
+                         fas::test::target_name);
 
 /// Disabled in the daily run; tests/CMakeLists.txt runs it with the label `long`.
 TEST(Identity, DISABLED_TenMillionRays) {

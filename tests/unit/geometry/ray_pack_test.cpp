@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Packs of rays against single rays: the same bits, for every kind of leaf, on every instruction set.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <random>
 
 #include "rayshade/geometry/intersector.h"
 #include "rayshade/geometry/pack_tracer.h"
 #include "rayshade/lang/parse.h"
+#include "tests/unit/fas/targets.h"
 
 namespace rayshade {
 namespace {
@@ -107,17 +107,7 @@ void compare(const Compiled& scene, const std::vector<Ray>& all) {
   EXPECT_GT(hits, all.size() / 50);
 }
 
-class RayPackTest : public testing::TestWithParam<std::int64_t> {
- protected:
-  void SetUp() override {
-    hwy::SetSupportedTargetsForTest(GetParam());
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  void TearDown() override {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
+using RayPackTest = fas::test::TargetTest;
 
 TEST_P(RayPackTest, EveryLeafAnswersAsForSingleRays) {
   unsigned seed = 100;
@@ -137,18 +127,8 @@ TEST_P(RayPackTest, CoincidentAndMixedLeavesAnswerAsForSingleRays) {
   compare(scene, rays(7, 50'000));
 }
 
-std::string target_name(const testing::TestParamInfo<std::int64_t>& info) {
-  return hwy::TargetName(info.param);
-}
-
-std::vector<std::int64_t> targets() {
-  std::vector<std::int64_t> out;
-  for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1)
-    out.push_back(left & -left);
-  return out;
-}
-
-INSTANTIATE_TEST_SUITE_P(Targets, RayPackTest, testing::ValuesIn(targets()), target_name);
+INSTANTIATE_TEST_SUITE_P(Targets, RayPackTest, testing::ValuesIn(fas::test::targets()),
+                         fas::test::target_name);
 
 }  // namespace
 }  // namespace rayshade
