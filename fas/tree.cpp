@@ -8,6 +8,9 @@
 #include <new>
 #include <numeric>
 
+#include "fas/leaf_writer.h"
+#include "fas/part.h"
+
 namespace fas {
 namespace {
 
@@ -126,82 +129,6 @@ class HyperTree::Square {
   TreeCounts& counts_;
   Area area_;
 };
-
-namespace {
-
-/// A square part of the root square.
-struct Part {
-  double x, y, size;
-
-  bool meets(const Area& a) const {
-    if (!(a.x0 <= x + size && a.x1 >= x && a.y0 <= y + size && a.y1 >= y)) return false;
-    for (int k = 0; k < a.cuts; ++k) {
-      const double half = 0.5 * size;
-      const double middle = a.cut[k][0] * (x + half) + a.cut[k][1] * (y + half) + a.cut[k][2];
-      const double reach = (std::fabs(a.cut[k][0]) + std::fabs(a.cut[k][1])) * half;
-      if (middle + reach < -0x1p-40 * (std::fabs(middle) + reach)) return false;
-    }
-    return true;
-  }
-  /// Whether an area is as large as this part, so that splitting it will not get rid of it.
-  bool within(const Area& a) const {
-    if (!(a.x0 <= x && a.x1 >= x + size && a.y0 <= y && a.y1 >= y + size)) return false;
-    return within_cuts(a, nullptr);
-  }
-  bool covered_by(const Area& a) const { return a.covers && within_cuts(a, a.inside); }
-
- private:
-  bool within_cuts(const Area& a, const double* inside) const {
-    for (int k = 0; k < a.cuts; ++k) {
-      const double half = 0.5 * size;
-      const double middle = a.cut[k][0] * (x + half) + a.cut[k][1] * (y + half) + a.cut[k][2];
-      const double reach = (std::fabs(a.cut[k][0]) + std::fabs(a.cut[k][1])) * half;
-      if (!(middle - reach > (inside ? inside[k] : 0))) return false;
-    }
-    return true;
-  }
-};
-
-/// What is behind the nearest cover of a part; infinite where nothing covers it.
-struct Truncation {
-  double limit = std::numeric_limits<double>::infinity();
-  void see(const Part& part, const Area& area) {
-    if (area.z1 < limit && part.covered_by(area)) limit = area.z1;
-  }
-  bool drops(double z0) const { return z0 > limit; }
-};
-
-std::uint8_t to_byte(double x) { return static_cast<std::uint8_t>(x < 0 ? 0 : x > 255 ? 255 : x); }
-
-/// The half-planes of a candidate, for coordinates q - 128 in 256ths of the cell. The larger factor becomes
-/// 127; what rounding the factors may change within the cell, and the extent of one 256th, goes into the
-/// offset.
-void quantise_cuts(const Area& area, const Part& part, std::int8_t (&ab)[6], std::int16_t (&c)[3]) {
-  for (int k = 0; k < 3; ++k) {
-    ab[2 * k] = ab[2 * k + 1] = 0;
-    c[k] = std::numeric_limits<std::int16_t>::max();
-    if (k >= area.cuts) continue;
-    const double step = part.size / 256;
-    double a = area.cut[k][0] * step, b = area.cut[k][1] * step;
-    const double offset = area.cut[k][2] + area.cut[k][0] * part.x + area.cut[k][1] * part.y;
-    const double rounding = 0x1p-46 * (std::fabs(area.cut[k][2]) + std::fabs(area.cut[k][0] * part.x) +
-                                       std::fabs(area.cut[k][1] * part.y));
-    const double largest = std::max(std::fabs(a), std::fabs(b));
-    if (!(largest > 0)) continue;
-    const double factor = 127 / largest;
-    a *= factor;
-    b *= factor;
-    const double ra = std::nearbyint(a), rb = std::nearbyint(b);
-    const double most = (offset + rounding) * factor + 128 * (a + b) + std::max(a, 0.0) + std::max(b, 0.0) +
-                        128.5 * (std::fabs(a - ra) + std::fabs(b - rb)) + 1;
-    if (!(most < 32767)) continue;
-    ab[2 * k] = static_cast<std::int8_t>(ra);
-    ab[2 * k + 1] = static_cast<std::int8_t>(rb);
-    c[k] = static_cast<std::int16_t>(std::max(-32768.0, std::ceil(most)));
-  }
-}
-
-}  // namespace
 
 View make_view(View::Kind kind, const Point& point, const Bounds& bounds, double condition) {
   constexpr double kUnit = std::numeric_limits<double>::epsilon();
@@ -494,67 +421,10 @@ std::uintptr_t HyperTree::make_leaf(Node& node, Root& root, int face, const Cell
   std::uint32_t with_cuts = 0;
   for (const Area& a : areas) with_cuts += a.cuts > 0;
   const bool cuts = 2 * with_cuts >= n && n >= 3;
-  std::size_t bytes = sizeof(Leaf);
-  for (std::uint32_t left = n; left > 0;) {
-    const std::uint32_t size = std::min<std::uint32_t>(left, Block::kMost);
-    left -= size;
-    // Not even what does not matter may be read while another thread writes it.
-    bytes += left > 0 ? Block::bytes(size, cuts) : Block::readable(size, cuts);
-  }
+  const std::size_t bytes = leaf_bytes(n, cuts);
   std::byte* memory = state.arena.take(bytes);
   if (!memory) return kNone;
-  Leaf* leaf = new (memory) Leaf;
-  leaf->count = n;
-  leaf->cuts = cuts ? 1 : 0;
-  leaf->final = final ? 1 : 0;
-  leaf->depth = static_cast<std::uint16_t>(cell.depth);
-  leaf->work.store(0, std::memory_order_relaxed);
-  leaf->splitting.store(0, std::memory_order_relaxed);
-  const double first = n > 0 ? areas[order[0]].z0 : 0, last = n > 0 ? areas[order[n - 1]].z0 : 0;
-  leaf->z0 = std::nextafter(static_cast<float>(first), -std::numeric_limits<float>::infinity());
-  const double range = last - static_cast<double>(leaf->z0), z_scale = range > 0 ? 254 / range : 0;
-  leaf->z_scale = z_scale < 1e30 ? static_cast<float>(z_scale) : 0;
-  const double step = 256 / part.size;
-  auto* block = reinterpret_cast<std::uint8_t*>(leaf + 1);
-  for (std::uint32_t done = 0; done < n;) {
-    const std::uint32_t size = std::min<std::uint32_t>(n - done, Block::kMost);
-    const std::size_t s = Block::stride(size);
-    std::uint8_t* cut_factors = block + Block::kAreaBytes * s;
-    std::uint8_t* cut_offsets = cut_factors + 6 * s;
-    auto* ids =
-        reinterpret_cast<std::uint32_t*>(block + (Block::kAreaBytes + (cuts ? Block::kCutBytes : 0)) * s);
-    for (std::size_t i = 0; i < s; ++i) {
-      if (i >= size) {
-        block[i] = block[2 * s + i] = block[4 * s + i] = 255;
-        block[s + i] = block[3 * s + i] = 0;
-        ids[i] = 0;
-        if (cuts) {
-          for (std::size_t k = 0; k < 6; ++k) cut_factors[k * s + i] = 0;
-          for (std::size_t k = 0; k < 3; ++k)
-            cut_offsets[2 * k * s + 2 * i] = cut_offsets[2 * k * s + 2 * i + 1] = 0;
-        }
-        continue;
-      }
-      const Area& a = areas[order[done + i]];
-      block[i] = to_byte((a.x0 - part.x) * step);
-      block[s + i] = to_byte((a.x1 - part.x) * step);
-      block[2 * s + i] = to_byte((a.y0 - part.y) * step);
-      block[3 * s + i] = to_byte((a.y1 - part.y) * step);
-      // By the very formula of quantised(), which is monotonic.
-      block[4 * s + i] = to_byte((a.z0 - leaf->z0) * leaf->z_scale);
-      ids[i] = a.id;
-      if (cuts) {
-        std::int8_t ab[6];
-        std::int16_t c[3];
-        quantise_cuts(a, part, ab, c);
-        for (std::size_t k = 0; k < 6; ++k) cut_factors[k * s + i] = static_cast<std::uint8_t>(ab[k]);
-        for (std::size_t k = 0; k < 3; ++k)
-          std::copy_n(reinterpret_cast<const std::uint8_t*>(&c[k]), 2, cut_offsets + 2 * k * s + 2 * i);
-      }
-    }
-    block += Block::bytes(size, cuts);
-    done += size;
-  }
+  write_leaf(memory, areas, order, part, {cuts, final, cell.depth});
   // From now on the node's own list is that of the leaf, should it be split.
   ++counts.leaves;
   counts.candidates += n;
