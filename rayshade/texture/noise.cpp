@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The noise functions. They are the hot spot of textured scenes: the eight corners share the first two
-// look-ups of the hash (14 table reads instead of 24), and everything else is straight-line arithmetic.
+// look-ups of the hash (14 table reads instead of 24), and everything else is straight-line arithmetic, four
+// corners at once where the processor can (noise_avx2.cpp).
 #include "rayshade/texture/noise.h"
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <limits>
 
 #include "rayshade/math/functions.h"
+#include "rayshade/texture/noise_kernels.h"
 #include "rayshade/texture/noise_tables.h"
 
 namespace rayshade {
@@ -88,9 +90,16 @@ inline Value sum_octaves(const Vec3& point, double weight, double frequency, int
   return sum;
 }
 
+const NoiseKernel& kernel() {
+  static const NoiseKernel best = best_noise_kernel();
+  return best;
+}
+
 }  // namespace
 
-double noise3(const Vec3& point) {
+namespace noise_detail {
+
+double noise3_scalar(const Vec3& point) {
   const Axis x = axis_of(point.x), y = axis_of(point.y), z = axis_of(point.z);
   const Corners corner = corners_of(x, y, z);
   const std::uint32_t* m = corner.m;
@@ -106,7 +115,7 @@ double noise3(const Vec3& point) {
   return sum;
 }
 
-Vec3 dnoise3(const Vec3& point) {
+Vec3 dnoise3_scalar(const Vec3& point) {
   const Axis x = axis_of(point.x), y = axis_of(point.y), z = axis_of(point.z);
   const Corners corner = corners_of(x, y, z);
   const double w00 = x.w0 * y.w0, w10 = x.w1 * y.w0, w01 = x.w0 * y.w1, w11 = x.w1 * y.w1;
@@ -128,18 +137,33 @@ Vec3 dnoise3(const Vec3& point) {
   return sum;
 }
 
-double chaos(const Vec3& point, int octaves) { return sum_octaves<double>(point, 0.5, 2, octaves, noise3); }
+}  // namespace noise_detail
+
+NoiseKernel scalar_noise_kernel() { return {noise_detail::noise3_scalar, noise_detail::dnoise3_scalar}; }
+
+NoiseKernel best_noise_kernel() {
+  if (__builtin_cpu_supports("avx2")) return {noise_detail::noise3_avx2, noise_detail::dnoise3_avx2};
+  return scalar_noise_kernel();
+}
+
+double noise3(const Vec3& point) { return kernel().value(point); }
+Vec3 dnoise3(const Vec3& point) { return kernel().vector(point); }
+
+double chaos(const Vec3& point, int octaves) {
+  return sum_octaves<double>(point, 0.5, 2, octaves, kernel().value);
+}
 
 double abs_chaos(const Vec3& point, int octaves) {
-  return sum_octaves<double>(point, 0.5, 2, octaves, [](const Vec3& p) { return std::fabs(noise3(p)); });
+  return sum_octaves<double>(point, 0.5, 2, octaves,
+                             [value = kernel().value](const Vec3& p) { return std::fabs(value(p)); });
 }
 
 double fbm(const Vec3& point, double omega, double lambda, int octaves) {
-  return sum_octaves<double>(point, omega, lambda, octaves, noise3);
+  return sum_octaves<double>(point, omega, lambda, octaves, kernel().value);
 }
 
 Vec3 vfbm(const Vec3& point, double omega, double lambda, int octaves) {
-  return sum_octaves<Vec3>(point, omega, lambda, octaves, dnoise3, kEpsilon);
+  return sum_octaves<Vec3>(point, omega, lambda, octaves, kernel().vector, kEpsilon);
 }
 
 double marble(const Vec3& point) {

@@ -13,6 +13,7 @@
 #include <random>
 #include <vector>
 
+#include "rayshade/texture/noise_kernels.h"
 #include "rayshade/texture/noise_tables.h"
 
 namespace rayshade {
@@ -179,11 +180,13 @@ class NoiseAtRandomPoints : public testing::Test {
 TEST_F(NoiseAtRandomPoints, IsThePlainFormulaBitForBit) {
   for (int i = 0; i < 20000; ++i) {
     const Vec3 p = point(i % 2 ? 20 : 3e6);  // beyond -1000000 too, where the original broke (D19)
-    ASSERT_EQ(noise3(p), plain_noise(p, 0, false));
-    const Vec3 d = dnoise3(p);
-    ASSERT_EQ(d.x, plain_noise(p, 0, true));
-    ASSERT_EQ(d.y, plain_noise(p, 4, true));
-    ASSERT_EQ(d.z, plain_noise(p, 8, true));
+    for (const NoiseKernel& kernel : {scalar_noise_kernel(), best_noise_kernel()}) {
+      ASSERT_EQ(kernel.value(p), plain_noise(p, 0, false));
+      const Vec3 d = kernel.vector(p);
+      ASSERT_EQ(d.x, plain_noise(p, 0, true));
+      ASSERT_EQ(d.y, plain_noise(p, 4, true));
+      ASSERT_EQ(d.z, plain_noise(p, 8, true));
+    }
   }
 }
 
