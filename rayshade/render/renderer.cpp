@@ -67,6 +67,7 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider&
   make_intersector();
   frame_.shading.intersector = intersector_.get();
   frame_.camera = camera_.get();
+  frame_.shading.look_distance = camera_->look_distance();
   frame_.grid = grid_.get();
   frame_.layers = options.layers;
   frame_.cost = options.cost;

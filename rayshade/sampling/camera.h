@@ -52,6 +52,8 @@ class Camera {
   const Vec3& right() const { return right_; }      ///< unit
   const Vec3& up() const { return up_; }            ///< unit, on the screen
   double focal_distance() const { return focal_distance_; }
+  /// From the eye to the point looked at.
+  double look_distance() const { return length(view_); }
 
   /// Where a point in front of the eye is seen on the screen: the (u, v) of the ray that meets it. Not finite
   /// for points beside or behind the eye plane.

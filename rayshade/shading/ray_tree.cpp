@@ -60,10 +60,11 @@ void RayTree::trace(std::span<const EyeSample> samples, std::span<SampleResult> 
 void RayTree::start_batch(std::size_t first, std::size_t count, std::span<const EyeSample> samples,
                           std::span<SampleResult> results) {
   nearest_queries_.resize(count);
+  const double start = scene_.eye_start();
   for (std::size_t i = 0; i < count; ++i) {
     NearestQuery& query = nearest_queries_[i];
     query.ray = samples[first + i].ray;
-    query.lo = kEpsilon;
+    query.lo = start;
     query.hi = kFar;
     query.mask = kAnyOpacity;
     query.kind = RayKind::kEye;
@@ -87,7 +88,7 @@ void RayTree::start_batch(std::size_t first, std::size_t count, std::span<const 
     const std::uint32_t id = allocate();
     Node& node = nodes_[id];
     node.ray = samples[first + i].ray;
-    node.lo = kEpsilon;
+    node.lo = start;
     node.contribution = {1, 1, 1};
     node.path = kRootPath;
     node.parent = kNone;

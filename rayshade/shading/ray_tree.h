@@ -9,6 +9,7 @@
 // later give the same bytes.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,6 +30,11 @@ struct ShadingScene {
   const Intersector* intersector = nullptr;
   std::vector<ShadingLight> lights;  ///< prepare_lights
   int frame = 0;
+  double look_distance = 1;  ///< Camera::look_distance
+
+  /// Where eye rays begin: kEpsilon from the eye (shading.md 1), or that share of the scene's extent or of
+  /// the way to what is looked at, whichever is least: an eye amid small things sees them.
+  double eye_start() const { return kEpsilon * std::min({1.0, compiled->scale, look_distance}); }
 };
 
 /// One eye ray. `sample` is k, the number of the cell within the pixel; `sample_number` is s
