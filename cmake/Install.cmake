@@ -59,14 +59,12 @@ set(CPACK_DEBIAN_PAFAS_PACKAGE_RECOMMENDS rayshade)
 set(CPACK_DEBIAN_PAFAS_PACKAGE_DEPENDS openmpi-bin)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT "The rayshade/pafas developers <rayshade@users.noreply.github.com>")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "ray tracer for Rayshade 4.0 scenes")
-# CPack itself puts the summary before it and indents it.
-set(CPACK_PACKAGE_DESCRIPTION
-"Renders scenes in the language of Rayshade 4.0 on all cores of one machine:
+# Each with its synopsis as the first line. No CPACK_PACKAGE_DESCRIPTION_SUMMARY: CPack would put that before both.
+set(CPACK_DEBIAN_UNSPECIFIED_DESCRIPTION "ray tracer for Rayshade 4.0 scenes
+Renders scenes in the language of Rayshade 4.0 on all cores of one machine:
 all shapes, constructive solid geometry, textures, lights, media, atmosphere
 and animation. The picture is the same, byte for byte, whatever the number of
 threads. Writes PNG, PPM, PFM, OpenEXR and Utah RLE.")
-set(CPACK_DEBIAN_UNSPECIFIED_DESCRIPTION "${CPACK_PACKAGE_DESCRIPTION_SUMMARY}\n${CPACK_PACKAGE_DESCRIPTION}")
 set(CPACK_DEBIAN_PAFAS_DESCRIPTION "ray tracer for Rayshade 4.0 scenes on clusters
 Renders one picture on the machines of a cluster under MPI: the same scenes,
 options and bytes as rayshade. Machines may differ in speed, share no disk,
