@@ -91,8 +91,10 @@ Estimate estimate_costs(const EnginePlan& plan, std::uint64_t scene_bytes) {
   const double sampled = static_cast<double>(feed.pixels);
   const double single = sampled / (sampled + static_cast<double>(seen.sampling.halo_samples));
   const double all_samples = static_cast<double>(plan.settings.samples) * plan.settings.samples;
-  const double work = sampled + all_samples * static_cast<double>(seen.sampling.supersampled) +
-                      static_cast<double>(seen.sampling.halo_samples);
+  const double work = plan.settings.sobol()
+                          ? static_cast<double>(seen.shading.eye_rays)
+                          : sampled + all_samples * static_cast<double>(seen.sampling.supersampled) +
+                                static_cast<double>(seen.sampling.halo_samples);
   const double halo =
       plan.settings.samples > 1 ? static_cast<double>(seen.sampling.halo_samples) / work : 1 - single;
   costs.tree_region_seconds = building * std::pow(1 / std::max(out.sample_share, 1e-6), .2);

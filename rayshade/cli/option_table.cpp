@@ -130,6 +130,31 @@ std::vector<OptionSpec> make_table() {
        kSampling,
        "Take at most N x N samples per pixel, N from 1 to 64.",
        [](Options& o, Values v) { o.settings.samples = std::max(1, parse_int(v[0], "-S", -kMax, 64)); }});
+  t.push_back(
+      {0,
+       "sampling",
+       {"KIND"},
+       kSampling,
+       "Where samples lie: original (jittered grids, refined by contrast as Rayshade 4.0 does), or sobol "
+       "(scrambled low-discrepancy points over pixel, lens, shutter and lights together, as many in each "
+       "pixel as its error needs, -S and --tolerance being the limits).",
+       [](Options& o, Values v) {
+         if (v[0] == "original")
+           o.settings.sampling = SamplingKind::kOriginal;
+         else if (v[0] == "sobol")
+           o.settings.sampling = SamplingKind::kSobol;
+         else
+           throw UsageError("--sampling: '" + v[0] + "' is neither original nor sobol");
+       },
+       {"original", "sobol"}});
+  t.push_back(
+      {0,
+       "tolerance",
+       {"T"},
+       kSampling,
+       "With --sampling sobol: the estimated standard error, in units of the picture's full range, at "
+       "which a pixel gets no more samples; 0.01 without it, 0 for all samples everywhere.",
+       [](Options& o, Values v) { o.settings.tolerance = parse_real(v[0], "--tolerance"); }});
   t.push_back({'j',
                "toggle-jitter",
                {},

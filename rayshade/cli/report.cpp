@@ -63,10 +63,16 @@ std::string settings_text(const RenderSettings& r, const Renderer& renderer) {
   out += fmt::format("Screen resolution: {} x {}\n", r.width, r.height);
   out += fmt::format("Image window: ({} - {}), ({} - {})\n", r.min_x, r.max_x, r.min_y, r.max_y);
   out += fmt::format("{}{} sample{} per pixel at most, {} filter of width {:g}\n",
-                     r.jitter ? "Jittered sampling, " : "", r.samples * r.samples, r.samples == 1 ? "" : "s",
+                     r.sobol()  ? "Low-discrepancy sampling, "
+                     : r.jitter ? "Jittered sampling, "
+                                : "",
+                     r.samples * r.samples, r.samples == 1 ? "" : "s",
                      r.filter == FilterKind::kBox ? "box" : "Gaussian", r.filter_width);
-  out += fmt::format("Maximum contrast: {:g} red, {:g} green, {:g} blue\n", r.contrast.r, r.contrast.g,
-                     r.contrast.b);
+  if (r.sobol())
+    out += fmt::format("Tolerated error: {:g}\n", r.tolerance);
+  else
+    out += fmt::format("Maximum contrast: {:g} red, {:g} green, {:g} blue\n", r.contrast.r, r.contrast.g,
+                       r.contrast.b);
   out += fmt::format("Maximum ray depth: {}. Cutoff thresholds: {:g} {:g} {:g}\n", r.max_depth, r.cutoff.r,
                      r.cutoff.g, r.cutoff.b);
   if (r.stereo == Eye::kLeft) out += "Rendering the left eye's view\n";
@@ -161,7 +167,9 @@ std::string statistics_json(const RenderStatistics& s, const RenderSettings& r, 
       .value("", r.min_y)
       .value("", r.max_y)
       .end_array();
-  j.value("samples", r.samples).value("jitter", r.jitter).value("max_depth", r.max_depth);
+  j.value("samples", r.samples).value("sampling", r.sobol() ? "sobol" : "original");
+  if (r.sobol()) j.value("tolerance", r.tolerance);
+  j.value("jitter", r.jitter).value("max_depth", r.max_depth);
   j.value("seed", r.seed).value("first_frame", r.first_frame).value("frames", r.frames);
   j.end_object();
   j.begin_object("resumed");

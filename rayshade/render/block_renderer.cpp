@@ -5,31 +5,9 @@
 #include <limits>
 #include <numeric>
 
-#include "rayshade/sampling/random.h"
+#include "rayshade/sampling/sample_numbers.h"
 
 namespace rayshade {
-namespace {
-
-/// Samples traced together: enough to fill spans of queries, few enough to stay in cache.
-constexpr std::size_t kChunk = 1024;
-
-void note_layer(const SampleResult& result, const std::vector<std::uint32_t>& numbers,
-                BlockPixels::Layer& layer) {
-  layer.depth = result.hit ? static_cast<float>(result.distance) : std::numeric_limits<float>::infinity();
-  for (int axis = 0; axis < 3; ++axis)
-    layer.normal[axis] = result.hit ? static_cast<float>(result.normal[axis]) : 0.0f;
-  layer.object = result.hit && !numbers.empty() ? static_cast<float>(numbers[result.leaf]) : 0.0f;
-}
-
-void store(double* pixel, const Color& color, double alpha) {
-  pixel[0] = color.r;
-  pixel[1] = color.g;
-  pixel[2] = color.b;
-  pixel[3] = alpha;
-}
-
-}  // namespace
-
 BlockRenderer::BlockRenderer(const FrameScene& frame) : frame_(frame), tree_(frame.shading) {}
 
 /// The one sample of a pixel that is not fully sampled (shading.md 7.3): uniform over its N x N samples, and
@@ -38,7 +16,7 @@ BlockRenderer::BlockRenderer(const FrameScene& frame) : frame_(frame), tree_(fra
 int BlockRenderer::chosen_sample(int x, int y) const {
   const int side = frame_.grid->samples_per_side();
   const int count = side * side;
-  if (count == 1) return 0;
+  if (count == 1 || frame_.shading.settings->sobol()) return 0;
   const RandomKey key{frame_.shading.settings->seed, frame_.shading.frame,
                       static_cast<std::uint32_t>(x / side), static_cast<std::uint32_t>(y / side), 0};
   // An affine permutation of the tile's pixels; the factor has no divisor in common with the count.
@@ -55,20 +33,22 @@ EyeSample BlockRenderer::eye_sample(int x, int y, int k) const {
   out.x = static_cast<std::uint32_t>(x);
   out.y = static_cast<std::uint32_t>(y);
   out.sample = static_cast<std::uint32_t>(k);
-  out.sample_number = frame_.grid->sample_number(k);
-  const RandomKey key{settings.seed, frame_.shading.frame, out.x, out.y, out.sample};
+  out.sample_number = settings.sobol() ? 0 : frame_.grid->sample_number(k);
+  const SampleNumbers numbers(settings, frame_.shading.frame, out.x, out.y, out.sample);
+  const bool moves = settings.sobol() || settings.jitter;
   std::array<double, 2> jitter{};
-  if (settings.jitter) jitter = uniform2(key, dimension(0, Purpose::kPixel));
-  const auto offset = frame_.grid->offset(k, jitter[0], jitter[1]);
+  if (moves) jitter = numbers.two(dimension(kRootPath, Purpose::kPixel));
+  const auto offset = settings.sobol() ? frame_.filter->offset(jitter[0], jitter[1])
+                                       : frame_.grid->offset(k, jitter[0], jitter[1]);
   const double u = x + offset[0], v = y + offset[1];
   if (frame_.camera->has_lens()) {
-    const auto lens = uniform2(key, dimension(0, Purpose::kLens));
+    const auto lens = numbers.two(dimension(kRootPath, Purpose::kLens));
     out.ray = frame_.camera->lens_ray(u, v, out.sample_number, lens[0], lens[1]);
   } else {
     out.ray = frame_.camera->ray(u, v);
   }
   const double xi =
-      settings.jitter && settings.shutter > 0 ? uniform(key, dimension(0, Purpose::kTime)) : 0.0;
+      moves && settings.shutter > 0 ? numbers.two(dimension(kRootPath, Purpose::kTime))[0] : 0.0;
   out.ray.time = frame_.camera->time(frame_.shading.frame, out.sample_number, xi);
   return out;
 }
@@ -98,6 +78,14 @@ void BlockRenderer::trace_samples() {
   }
 }
 
+void BlockRenderer::note_layer(const SampleResult& result, BlockPixels::Layer& layer) const {
+  layer.depth = result.hit ? static_cast<float>(result.distance) : std::numeric_limits<float>::infinity();
+  for (int axis = 0; axis < 3; ++axis)
+    layer.normal[axis] = result.hit ? static_cast<float>(result.normal[axis]) : 0.0f;
+  layer.object =
+      result.hit && !frame_.numbers.empty() ? static_cast<float>(frame_.numbers[result.leaf]) : 0.0f;
+}
+
 void BlockRenderer::add_cost(const SampleResult& result, const SampleCost* cost, BlockPixels::Layer& layer) {
   layer.tests += static_cast<float>(result.tests);
   layer.bounds_tests += static_cast<float>(result.bounds_tests);
@@ -124,6 +112,10 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
   out.layers.assign(layered ? pixels : 0, {});
   ++counts_.blocks;
   counts_.pixels += pixels;
+  if (settings.sobol()) {
+    render_until_exact(rect, out);
+    return;
+  }
 
   // Single samples, with the halo that refinement looks at.
   const bool refine = frame_.grid->count() > 1;
@@ -149,10 +141,10 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
     for (int x = rect.x0; x < rect.x1; ++x, ++index) {
       const std::size_t i = outer_index(x, y);
       const SampleResult& one = single[i];
-      store(&out.rgba[4 * index], one.color, one.hit && !frame_.sample_map ? 1.0 : 0.0);
+      store_pixel(&out.rgba[4 * index], one.color, one.hit && !frame_.sample_map ? 1.0 : 0.0);
       if (layered) {
         BlockPixels::Layer& layer = out.layers[index];
-        note_layer(one, frame_.numbers, layer);
+        note_layer(one, layer);
         layer.samples = 1;
         add_cost(one, frame_.cost ? &single_cost[i] : nullptr, layer);
       }
@@ -193,7 +185,7 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
         if (!layered || k == reused) continue;
         add_cost(sample, frame_.cost ? cost++ : nullptr, out.layers[p]);
       }
-      store(&out.rgba[4 * p], sum, frame_.sample_map ? 1.0 : alpha);
+      store_pixel(&out.rgba[4 * p], sum, frame_.sample_map ? 1.0 : alpha);
       if (layered) out.layers[p].samples = static_cast<float>(count);
     }
     samples_.clear();
@@ -210,7 +202,7 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
     for (int k = 0; k < count; ++k) {
       if (k != reused) samples_.push_back(eye_sample(x, y, k));
     }
-    if (samples_.size() >= kChunk) flush();
+    if (samples_.size() >= kSamplesTogether) flush();
   }
   if (!chosen.empty()) flush();
 }
@@ -218,11 +210,7 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
 void BlockRenderer::observe(int x, int y, TreeObserver& observer) {
   tree_.set_observer(&observer);
   samples_.clear();
-  if (frame_.grid->count() == 1) {
-    samples_.push_back(eye_sample(x, y, 0));
-  } else {
-    samples_.push_back(eye_sample(x, y, chosen_sample(x, y)));
-  }
+  samples_.push_back(eye_sample(x, y, chosen_sample(x, y)));
   trace_samples();
   tree_.set_observer(nullptr);
 }

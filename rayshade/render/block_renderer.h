@@ -8,7 +8,9 @@
 #include "rayshade/render/statistics.h"
 #include "rayshade/sampling/camera.h"
 #include "rayshade/sampling/grid.h"
+#include "rayshade/sampling/pixel_filter.h"
 #include "rayshade/sampling/refine.h"
+#include "rayshade/sampling/stop.h"
 #include "rayshade/shading/ray_tree.h"
 
 namespace rayshade {
@@ -18,10 +20,11 @@ struct FrameScene {
   ShadingScene shading;
   const Camera* camera = nullptr;
   const SampleGrid* grid = nullptr;
-  bool layers = false;                 ///< depth, normal, object and samples are wanted
-  bool cost = false;                   ///< tests and time per pixel are wanted
-  std::vector<std::uint32_t> numbers;  ///< object_numbers, where layers are wanted or a pixel is explained
-  bool sample_map = false;             ///< alpha tells which pixels are fully sampled (-m)
+  const PixelFilter* filter = nullptr;  ///< of SamplingKind::kSobol
+  bool layers = false;                  ///< depth, normal, object and samples are wanted
+  bool cost = false;                    ///< tests and time per pixel are wanted
+  std::vector<std::uint32_t> numbers;   ///< object_numbers, where layers are wanted or a pixel is explained
+  bool sample_map = false;              ///< alpha tells which pixels are fully sampled (-m)
 };
 
 /// Finished pixels of a rectangle, row by row.
@@ -42,6 +45,16 @@ struct BlockPixels {
   std::vector<Layer> layers;  ///< empty unless layers or cost are wanted
 };
 
+/// Samples traced together: enough to fill spans of queries, few enough to stay in cache.
+inline constexpr std::size_t kSamplesTogether = 1024;
+
+inline void store_pixel(double* pixel, const Color& color, double alpha) {
+  pixel[0] = color.r;
+  pixel[1] = color.g;
+  pixel[2] = color.b;
+  pixel[3] = alpha;
+}
+
 /// Renders blocks; one per thread. The pixels of a rectangle are a function of the frame and the rectangle's
 /// pixels alone, whatever rectangle they are part of.
 class BlockRenderer {
@@ -61,6 +74,16 @@ class BlockRenderer {
   void trace_range(std::size_t first, std::size_t count);
   void trace_samples();
   void render_single(const PixelRect& rect);
+  struct Rounds {
+    BlockPixels& out;
+    PixelRect outer;                  ///< the block and its halo
+    std::vector<SampleSums> sums;     ///< per pixel of `outer`
+    std::vector<std::size_t> owners;  ///< pixel in `outer` of each of samples_
+  };
+  void take_samples(Rounds& rounds, std::size_t pixel, int from, int to);
+  void trace_round(Rounds& rounds);
+  void render_until_exact(const PixelRect& rect, BlockPixels& out);
+  void note_layer(const SampleResult& result, BlockPixels::Layer& layer) const;
 
   const FrameScene& frame_;
   RayTree tree_;

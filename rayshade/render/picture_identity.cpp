@@ -48,6 +48,8 @@ JournalIdentity picture_identity(const Scene& scene, const std::string& scene_ha
   add("screen", fmt::format("{} x {}", s.width, s.height));
   add("window", fmt::format("{} {} {} {}", s.min_x, s.max_x, s.min_y, s.max_y));
   add("samples", s.samples);
+  add("sampling", s.sobol() ? "sobol" : "original");
+  add("tolerance", s.sobol() ? fmt::format("{}", s.tolerance) : "none");
   add("jitter", s.jitter);
   add("filter", s.filter == FilterKind::kGauss ? "gauss" : "box");
   add("filter width", s.filter_width);

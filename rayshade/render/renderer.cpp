@@ -58,10 +58,11 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider&
   if (compiled_->counts.primitives == 0) throw RenderError("nothing to render: the scene has no objects", {});
   camera_ = std::make_unique<Camera>(settings_);
   grid_ = std::make_unique<SampleGrid>(settings_);
+  if (settings_.sobol()) filter_ = std::make_unique<PixelFilter>(settings_.filter, settings_.filter_width);
   frame_.shading.compiled = compiled_.get();
   frame_.shading.textures = textures_.get();
   frame_.shading.settings = &settings_;
-  frame_.shading.lights = prepare_lights(scene);
+  frame_.shading.lights = prepare_lights(scene, settings_);
   for (std::size_t i = 0; i < frame_.shading.lights.size(); ++i)
     statistics_.light_names.push_back(light_name(frame_.shading.lights, i));
   make_intersector();
@@ -69,6 +70,7 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider&
   frame_.camera = camera_.get();
   frame_.shading.look_distance = camera_->look_distance();
   frame_.grid = grid_.get();
+  frame_.filter = filter_.get();
   frame_.layers = options.layers;
   frame_.cost = options.cost;
   frame_.sample_map = options.sample_map;

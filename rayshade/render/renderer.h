@@ -90,6 +90,7 @@ class Renderer {
   const VerifyingIntersector* verifier_ = nullptr;  ///< intersector_, if that is one
   std::unique_ptr<Camera> camera_;
   std::unique_ptr<SampleGrid> grid_;
+  std::unique_ptr<PixelFilter> filter_;  ///< where the sampling has one
   FrameScene frame_;
   RenderStatistics statistics_;
 };

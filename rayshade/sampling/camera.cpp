@@ -16,7 +16,7 @@ Camera::Camera(const RenderSettings& settings)
       start_time_(settings.start_time),
       frame_length_(settings.frame_length),
       shutter_(settings.shutter),
-      side_(settings.samples) {
+      side_(settings.strata()) {
   // Unit vectors before the products: models of any size keep their basis.
   const Vec3 up = normalize(settings.up);
   const auto aim = [&] {

@@ -134,6 +134,11 @@ void resolve_sampling(const SceneSettings& scene, const SettingsOverrides& optio
                                     out.samples, kMaxSamples),
                         options.samples ? Location{} : scene.samples_location);
   }
+  out.sampling = options.sampling.value_or(out.sampling);
+  if (options.tolerance && !out.sobol()) throw SettingsError("a tolerance needs --sampling sobol");
+  out.tolerance = options.tolerance.value_or(out.tolerance);
+  if (!(out.tolerance >= 0) || out.tolerance > 1)
+    throw SettingsError(fmt::format("tolerance {} is out of range: 0 to 1", out.tolerance));
   out.jitter = choose(options.jitter, scene.jitter, out.jitter);
   out.filter = choose(options.filter, scene.filter, out.filter);
   out.filter_width = scene.filter_width.value_or(out.filter == FilterKind::kGauss ? kGaussWidth : 1.0);

@@ -16,6 +16,11 @@
 namespace rayshade {
 
 enum class FilterKind : std::uint8_t { kBox, kGauss };
+/// Where the samples of a pixel lie, and which pixels get how many.
+enum class SamplingKind : std::uint8_t {
+  kOriginal,  ///< jittered grids, refined by contrast (shading.md 7)
+  kSobol,     ///< scrambled low-discrepancy points, until their estimated error is small
+};
 enum class Eye : std::uint8_t { kCenter, kLeft, kRight };
 enum class EffectKind : std::uint8_t { kFog, kMist, kFogDeck };
 
@@ -65,6 +70,8 @@ struct SettingsOverrides {
   std::optional<std::array<int, 4>> window;
   std::optional<std::array<double, 4>> crop;
   std::optional<int> samples;
+  std::optional<SamplingKind> sampling;
+  std::optional<double> tolerance;
   std::optional<bool> jitter;
   std::optional<FilterKind> filter;
   std::optional<Color> contrast, cutoff;
@@ -90,7 +97,10 @@ struct RenderSettings {
   int width = 512, height = 512;                       ///< the screen
   int min_x = 0, max_x = 511, min_y = 0, max_y = 511;  ///< the window, inclusive, rows from the top
   int samples = 3;                                     ///< per side, 1..64
-  bool jitter = true;
+  SamplingKind sampling = SamplingKind::kOriginal;
+  /// kSobol: the estimated standard error of a channel below which a pixel gets no more samples; 0: never.
+  double tolerance = 0.01;
+  bool jitter = true;  ///< kOriginal
   FilterKind filter = FilterKind::kBox;
   double filter_width = 1;
   Color contrast{0.2, 0.15, 0.3};
@@ -107,6 +117,10 @@ struct RenderSettings {
   std::vector<AtmosphereEffect> effects;
   std::uint64_t seed = 0;
 
+  bool sobol() const { return sampling == SamplingKind::kSobol; }
+  /// Columns and rows into which sample numbers divide lens, extended lights and gloss: 1 under kSobol,
+  /// whose points are spread over the pixel by themselves.
+  int strata() const { return sobol() ? 1 : samples; }
   double frame_start(int frame) const { return start_time + frame * frame_length; }
   int window_width() const { return max_x - min_x + 1; }
   int window_height() const { return max_y - min_y + 1; }

@@ -29,7 +29,7 @@ ShadingLight prepare(const Light& light) {
 
 }  // namespace
 
-std::vector<ShadingLight> prepare_lights(const Scene& scene) {
+std::vector<ShadingLight> prepare_lights(const Scene& scene, const RenderSettings& settings) {
   std::vector<Light> written(scene.lights);
   if (written.empty()) written.push_back(default_light());
   std::vector<ShadingLight> lights;
@@ -41,6 +41,15 @@ std::vector<ShadingLight> prepare_lights(const Scene& scene) {
     }
     // Cells with v outer and u inner, each of its share of the intensity (shading.md 4.3).
     const int nu = light.u_samples, nv = light.v_samples;
+    if (settings.sobol()) {
+      const int samples = settings.samples * settings.samples;
+      base.turns = static_cast<std::uint32_t>((nu * nv + samples - 1) / samples);
+      base.edge_u = light.u_end - light.position;
+      base.edge_v = light.v_end - light.position;
+      base.intensity = light.intensity * (1.0 / base.turns);
+      for (; base.turn < base.turns; ++base.turn) lights.push_back(base);
+      continue;
+    }
     base.edge_u = (light.u_end - light.position) / nu;
     base.edge_v = (light.v_end - light.position) / nv;
     base.intensity = light.intensity * (1.0 / (static_cast<double>(nu) * nv));
@@ -54,6 +63,10 @@ std::vector<ShadingLight> prepare_lights(const Scene& scene) {
     }
   }
   std::reverse(lights.begin(), lights.end());
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const bool again = l > 0 && lights[l].turn + 1 < lights[l].turns;
+    lights[l].sequence = again ? lights[l - 1].sequence : static_cast<std::uint32_t>(l);
+  }
   return lights;
 }
 

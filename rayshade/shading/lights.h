@@ -24,10 +24,15 @@ struct ShadingLight {
   double cos_inner = -1, cos_outer = -1;
   double radius = 0;    ///< extended
   Vec3 edge_u, edge_v;  ///< area: edges of the cell
+  /// Area and extended: the random numbers are those for light `sequence`, turn by turn for each eye sample.
+  std::uint32_t sequence = 0, turn = 0, turns = 1;
 };
 
-/// All lights of the scene (the default light where it defines none), in evaluation order.
-std::vector<ShadingLight> prepare_lights(const Scene& scene);
+/// All lights of the scene (the default light where it defines none), in evaluation order. Under
+/// SamplingKind::kSobol an area light is not split into cells: all samples of a pixel share it, each of them
+/// taking so many points of the whole light that a pixel with all its samples meets no fewer than the light
+/// has cells.
+std::vector<ShadingLight> prepare_lights(const Scene& scene, const RenderSettings& settings);
 
 /// What a light is called in reports, as "light 2 (spot)": numbered from 1 in the order of definition, every
 /// cell of an area light by itself. `light`: index in `lights`.

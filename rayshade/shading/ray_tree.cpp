@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "rayshade/math/functions.h"
-#include "rayshade/sampling/random.h"
+#include "rayshade/sampling/sample_numbers.h"
 #include "rayshade/shading/atmosphere.h"
 #include "rayshade/shading/ray_tree_records.h"
 
@@ -15,13 +15,13 @@ namespace {
 /// The uniforms of gloss textures at one hit, addressed by the path of its ray (rule 6).
 class Gloss final : public GlossDraws {
  public:
-  Gloss(const RandomKey& key, std::uint64_t path) : key_(key), path_(path) {}
+  Gloss(const SampleNumbers& numbers, std::uint64_t path) : numbers_(numbers), path_(path) {}
   std::array<double, 2> operator()(unsigned nth) const override {
-    return uniform2(key_, dimension(path_, Purpose::kGloss, nth));
+    return numbers_.two(dimension(path_, Purpose::kGloss, nth));
   }
 
  private:
-  RandomKey key_;
+  SampleNumbers numbers_;
   std::uint64_t path_;
 };
 
@@ -183,8 +183,8 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
     Shade& shade = shades_[shade_count_++];
     shade.node = id;
     const EyeSample& sample = samples[node.root];
-    const Gloss gloss({scene_.settings->seed, scene_.frame, sample.x, sample.y, sample.sample}, node.path);
-    const SampleContext context{sample.sample_number, scene_.settings->samples, &gloss};
+    const Gloss gloss({*scene_.settings, scene_.frame, sample.x, sample.y, sample.sample}, node.path);
+    const SampleContext context{sample.sample_number, scene_.settings->strata(), &gloss};
     shade.surface = &evaluate_hit(*scene_.compiled, *scene_.textures, answer.hit, node.ray, context, scratch_,
                                   shade.world, shade.textured);
     const WorldHit& world = shade.world;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "rayshade/math/functions.h"
-#include "rayshade/sampling/random.h"
+#include "rayshade/sampling/sample_numbers.h"
 #include "rayshade/shading/ray_tree_records.h"
 
 namespace rayshade {
@@ -51,9 +51,13 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
     const bool diffuse_black = is_black(surface.diffuse);
     for (std::size_t l = first_light; l < last_light; ++l) {
       const ShadingLight& light = scene_.lights[l];
-      const RandomKey key{settings.seed, scene_.frame, sample.x, sample.y, sample.sample};
+      const SampleNumbers numbers(settings, scene_.frame, sample.x, sample.y, sample.sample);
+      const auto draw = [&] {
+        return numbers.two_of_several(dimension(node.path, Purpose::kLight, light.sequence), light.turn,
+                                      light.turns);
+      };
       std::array<double, 2> draws{};
-      if (light.kind == LightKind::kArea) draws = uniform2(key, dimension(node.path, Purpose::kLight, l));
+      if (light.kind == LightKind::kArea) draws = draw();
       const Illumination light_in = illuminate(light, world.point, draws[0], draws[1]);
       double c = dot(light_in.direction, world.normal);
       if (world.smooth && c <= 0) {
@@ -91,9 +95,9 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
         Vec3 direction = light_in.direction;
         double far = light_in.distance;
         if (light.kind == LightKind::kExtended) {
-          draws = uniform2(key, dimension(node.path, Purpose::kLight, l));
-          const Vec3 target =
-              extended_target(light, world.point, sample.sample_number, settings.samples, draws[0], draws[1]);
+          draws = draw();
+          const Vec3 target = extended_target(light, world.point, sample.sample_number, settings.strata(),
+                                              draws[0], draws[1]);
           far = length(target);
           direction = target / far;
         }

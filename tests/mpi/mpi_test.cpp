@@ -64,9 +64,10 @@ TEST_F(MpiTest, TheBytesOfRayshadeOnAnyNumberOfRanks) {
 }
 
 TEST_F(MpiTest, SchedulesWindowsAndFrames) {
-  for (const char* options : {"--schedule roundrobin", "--schedule bands", "--schedule blocks --start third",
-                              "--schedule cost --granularity 1", "-W 5 60 3 40", "-X .2 .9 .1 .6",
-                              "--dedicated-master --block 7"}) {
+  for (const char* options :
+       {"--schedule roundrobin", "--schedule bands", "--schedule blocks --start third",
+        "--schedule cost --granularity 1", "-W 5 60 3 40", "-S 4 --sampling sobol --tolerance .02",
+        "-X .2 .9 .1 .6", "--dedicated-master --block 7"}) {
     const std::string view = options[1] == '-' ? "-R 80 60 -S 2" : std::string("-R 80 60 -S 2 ") + options;
     const std::string picture_alone = expected(view);
     Job job(folder(), on_ranks(3), std::string("-R 80 60 -S 2 ") + options + " -q -O out.ppm scene.ray");

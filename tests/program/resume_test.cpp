@@ -142,6 +142,9 @@ TEST_F(ResumeTest, WhatChangedIsNamed) {
   Outcome out = go("-c -S 1 -O a.png a.ray");
   EXPECT_EQ(out.status, 1);
   EXPECT_THAT(out.err, HasSubstr("samples was 4, is now 1"));
+  out = go("-c --sampling sobol -O a.png a.ray");
+  EXPECT_EQ(out.status, 1);
+  EXPECT_THAT(out.err, HasSubstr("sampling was original, is now sobol"));
   std::string changed = kScene;
   changed.replace(changed.find("3 0 0 0"), 7, "3 0 0 1");
   scene("1500 1200", changed);

@@ -61,6 +61,8 @@ TEST(ParseOptionsTest, MisuseIsAUsageError) {
                                                                                    {"-V", "-x"},
                                                                                    {"--no-such"},
                                                                                    {"--seed=-1"},
+                                                                                   {"--sampling", "halton"},
+                                                                                   {"--tolerance", "x"},
                                                                                    {"--intersector", "magic"},
                                                                                    {"-G", "1x"},
                                                                                    {"--memory", "5Q"},

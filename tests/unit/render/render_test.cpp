@@ -98,6 +98,69 @@ TEST(RenderTest, ThreadsAndBlocksDoNotMatter) {
   EXPECT_GT(highest, 0.6f);
 }
 
+SettingsOverrides sobol(std::optional<double> tolerance = {}) {
+  SettingsOverrides out;
+  out.sampling = SamplingKind::kSobol;
+  out.tolerance = tolerance;
+  return out;
+}
+
+TEST(RenderTest, LowDiscrepancySamplingDoesNotDependOnWhoRenders) {
+  const Scene scene = parse(kEverything);
+  const Picture one = render(scene, sobol(.02));
+  EXPECT_NE(one.rgba, render(scene).rgba);
+  RenderOptions options;
+  options.threads = 3;
+  EXPECT_EQ(render(scene, sobol(.02), options).rgba, one.rgba);
+  for (const int side : {1, 5, 61}) {
+    options.block_side = side;
+    EXPECT_EQ(render(scene, sobol(.02), options).rgba, one.rgba) << side;
+  }
+  options = {};
+  options.intersector = IntersectorKind::kBruteForce;
+  EXPECT_EQ(render(scene, sobol(.02), options).rgba, one.rgba);
+  SettingsOverrides window = sobol(.02);
+  window.window = {{10, 33, 5, 21}};
+  const Picture part = render(scene, window);
+  for (std::size_t y = 0; y < 17; ++y) {
+    for (std::size_t i = 0; i < 4 * 24; ++i)
+      ASSERT_EQ(part.rgba[4 * 24 * y + i], one.rgba[4 * (61 * (y + 5) + 10) + i]) << y << ' ' << i;
+  }
+}
+
+TEST(RenderTest, ToleranceDecidesHowManySamplesAreTaken) {
+  const Scene scene = parse(std::string(kEverything) + "sample 6\n");
+  const auto samples = [&](double tolerance) {
+    const Picture picture = render(scene, sobol(tolerance));
+    return picture.statistics.shading.eye_rays - picture.statistics.sampling.halo_samples;
+  };
+  const std::uint64_t all = samples(0), some = samples(.01), few = samples(.05), none = samples(1);
+  EXPECT_EQ(all, 61u * 47 * 36);
+  EXPECT_EQ(none, 61u * 47 * 4);
+  EXPECT_LT(few, some);
+  EXPECT_LT(some, all);
+  EXPECT_GT(few, none);
+}
+
+TEST(RenderTest, TheSamplesOfAPixelShareAnAreaLight) {
+  // As many points of the light as it has cells, for a pixel with all its samples; the same light.
+  const Scene scene = parse(R"(
+    screen 20 20  sample 2  eyep 0 -9 4  lookp 0 0 0  maxdepth 0
+    light .9 area -1 -1 5  1 -1 5 4  -1 1 5 3
+    plane 0 0 0 0 0 1
+  )");
+  const Picture cells = render(scene), shared = render(scene, sobol(0));
+  EXPECT_EQ(cells.statistics.light_names.size(), 12u);
+  EXPECT_EQ(shared.statistics.light_names.size(), 3u);
+  const auto mean = [](const Picture& picture) {
+    double sum = 0;
+    for (const float value : picture.rgba) sum += value;
+    return sum / static_cast<double>(picture.rgba.size());
+  };
+  EXPECT_GT(mean(cells), .6);
+  EXPECT_NEAR(mean(shared), mean(cells), .001);
+}
+
 TEST(RenderTest, TheHierarchyGivesThePictureOfBruteForce) {
   const Scene scene = parse(kEverything);
   RenderOptions brute;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -102,6 +103,23 @@ TEST(SettingsTest, OptionsWinOverTheScene) {
   EXPECT_EQ(s.frames, 3);
   EXPECT_EQ(s.first_frame, 5);
   EXPECT_EQ(s.seed, 77u);
+}
+
+TEST(SettingsTest, ToleranceIsForLowDiscrepancySampling) {
+  EXPECT_FALSE(resolve_settings({}, {}).sobol());
+  EXPECT_EQ(resolve_settings({}, {}).strata(), 3);
+  SettingsOverrides options;
+  options.tolerance = .02;
+  EXPECT_THROW(resolve_settings({}, options), SettingsError);
+  options.sampling = SamplingKind::kSobol;
+  EXPECT_EQ(resolve_settings({}, options).tolerance, .02);
+  EXPECT_EQ(resolve_settings({}, options).strata(), 1);
+  options.tolerance = 0;
+  EXPECT_EQ(resolve_settings({}, options).tolerance, 0);
+  for (const double wrong : {-.1, 1.5, std::nan("")}) {
+    options.tolerance = wrong;
+    EXPECT_THROW(resolve_settings({}, options), SettingsError) << wrong;
+  }
 }
 
 TEST(SettingsTest, VerticalFieldOfViewFollowsTheAngle) {

@@ -22,7 +22,7 @@ Light spot(double exponent, double inner, double outer) {
 ShadingLight prepared(const Light& light) {
   Scene scene;
   scene.lights.push_back(light);
-  return prepare_lights(scene).at(0);
+  return prepare_lights(scene, RenderSettings{}).at(0);
 }
 
 double cos_degrees(double degrees) { return fn::cos(degrees * fn::kPi / 180); }
@@ -60,7 +60,7 @@ TEST(PrepareLightsTest, EvaluationOrderIsTheReverseOfDefinition) {
     light.position = {static_cast<double>(i), 0, 0};
     scene.lights.push_back(light);
   }
-  const auto lights = prepare_lights(scene);
+  const auto lights = prepare_lights(scene, RenderSettings{});
   ASSERT_EQ(lights.size(), 3u);
   EXPECT_EQ(lights[0].position.x, 2);
   EXPECT_EQ(lights[2].position.x, 0);
@@ -77,7 +77,7 @@ TEST(PrepareLightsTest, AreaLightsBecomeCellsOfEqualShare) {
   area.v_samples = 2;
   Scene scene;
   scene.lights.push_back(area);
-  const auto lights = prepare_lights(scene);
+  const auto lights = prepare_lights(scene, RenderSettings{});
   ASSERT_EQ(lights.size(), 6u);
   // Last defined first: the cell of the largest u and v.
   EXPECT_EQ(lights[0].position, (Vec3{3, 2, 1}));
@@ -89,7 +89,7 @@ TEST(PrepareLightsTest, AreaLightsBecomeCellsOfEqualShare) {
 }
 
 TEST(PrepareLightsTest, ASceneWithoutLightsHasTheDefaultOne) {
-  const auto lights = prepare_lights(Scene{});
+  const auto lights = prepare_lights(Scene{}, RenderSettings{});
   ASSERT_EQ(lights.size(), 1u);
   const Illumination light = illuminate(lights[0], {5, 6, 7}, 0, 0);
   EXPECT_NEAR(light.direction.x, 1 / std::sqrt(3.0), 1e-15);

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Blocks whose pixels get as many samples as their error needs (sampling/stop.h): first samples with a halo,
+// then round after round those pixels of the block that have not enough.
+#include <algorithm>
+#include <array>
+
+#include "rayshade/render/block_renderer.h"
+#include "rayshade/sampling/stop.h"
+
+namespace rayshade {
+
+/// Adds samples `from` ... `to` - 1 of a pixel of `rounds.outer` to those to be traced.
+void BlockRenderer::take_samples(Rounds& rounds, std::size_t pixel, int from, int to) {
+  const auto width = static_cast<std::size_t>(rounds.outer.width());
+  const int x = rounds.outer.x0 + static_cast<int>(pixel % width);
+  const int y = rounds.outer.y0 + static_cast<int>(pixel / width);
+  for (int k = from; k < to; ++k) {
+    samples_.push_back(eye_sample(x, y, k));
+    rounds.owners.push_back(pixel);
+    if (samples_.size() >= kSamplesTogether) trace_round(rounds);
+  }
+}
+
+/// Traces what was taken and adds it up.
+void BlockRenderer::trace_round(Rounds& rounds) {
+  trace_samples();
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const SampleResult& result = results_[i];
+    rounds.sums[rounds.owners[i]].add(result.color, result.hit);
+    const int x = static_cast<int>(samples_[i].x), y = static_cast<int>(samples_[i].y);
+    if (rounds.out.layers.empty() || !rounds.out.rect.contains(x, y)) continue;
+    BlockPixels::Layer& layer = rounds.out.layers[rounds.out.rect.index(x, y)];
+    if (samples_[i].sample == 0) note_layer(result, layer);
+    layer.samples += 1;
+    add_cost(result, frame_.cost ? &costs_[i] : nullptr, layer);
+  }
+  samples_.clear();
+  rounds.owners.clear();
+}
+
+void BlockRenderer::render_until_exact(const PixelRect& rect, BlockPixels& out) {
+  const RenderSettings& settings = *frame_.shading.settings;
+  const int most = settings.samples * settings.samples;
+  const StopRule rule(settings.tolerance, most);
+  const bool stops = rule.first() < most;
+  Rounds rounds{out, stops ? halo(rect, kStopReach, settings.width, settings.height) : rect, {}, {}};
+  const PixelRect& outer = rounds.outer;
+  rounds.sums.resize(outer.area());
+  samples_.clear();
+  for (std::size_t p = 0; p < outer.area(); ++p) take_samples(rounds, p, 0, rule.first());
+  trace_round(rounds);
+  counts_.halo_samples += (outer.area() - rect.area()) * static_cast<std::size_t>(rule.first());
+
+  struct Open {
+    std::size_t pixel;  ///< in `outer`
+    Color prior;
+  };
+  std::vector<Open> open;
+  for (int y = rect.y0; stops && y < rect.y1; ++y) {
+    for (int x = rect.x0; x < rect.x1; ++x) {
+      std::array<SampleSums, 9> around;
+      for (int i = 0; i < 9; ++i) {
+        const int near_x = std::clamp(x + i % 3 - 1, 0, settings.width - 1);
+        const int near_y = std::clamp(y + i / 3 - 1, 0, settings.height - 1);
+        around[static_cast<std::size_t>(i)] = rounds.sums[outer.index(near_x, near_y)];
+      }
+      open.push_back({outer.index(x, y), StopRule::prior(around)});
+    }
+  }
+  for (int count = rule.first(); count < most && !open.empty();) {
+    std::erase_if(open, [&](const Open& o) { return rule.enough(rounds.sums[o.pixel], o.prior); });
+    const int next = rule.next(count);
+    for (const Open& o : open) take_samples(rounds, o.pixel, count, next);
+    trace_round(rounds);
+    count = next;
+  }
+  counts_.supersampled += stops ? open.size() : rect.area();
+
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    for (int x = rect.x0; x < rect.x1; ++x) {
+      const SampleSums& pixel = rounds.sums[outer.index(x, y)];
+      const double alpha =
+          frame_.sample_map ? pixel.count == most : pixel.hits / static_cast<double>(pixel.count);
+      store_pixel(&out.rgba[4 * rect.index(x, y)], pixel.mean(), alpha);
+    }
+  }
+}
+
+}  // namespace rayshade

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "rayshade/sampling/stop.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rayshade {
+namespace {
+
+/// The samples for which the prior counts. Fewer miss thin things; more waste samples beside edges. Measured
+/// from 1 to 9 by the error at equal time: flat around 4.
+constexpr double kPriorWeight = 4;
+
+/// The variance of one channel's mean, or 0 where that is certain to be shown as full intensity.
+double visible_variance(double mean, double variance) {
+  constexpr double kCertain = 4;  // standard errors
+  return mean - kCertain * std::sqrt(variance) > 1 ? 0 : variance;
+}
+
+}  // namespace
+
+int StopRule::next(int count) const {
+  const int twice = 2 * count;
+  // A rest of less than half a round is not worth one of its own.
+  return most_ - twice < count ? most_ : twice;
+}
+
+Color StopRule::prior(std::span<const SampleSums, 9> around) {
+  Color sum, squares, ramp_x, ramp_y, within;
+  for (int i = 0; i < 9; ++i) {
+    const SampleSums& pixel = around[static_cast<std::size_t>(i)];
+    const Color mean = pixel.mean();
+    sum += mean;
+    squares += mean * mean;
+    ramp_x += static_cast<double>(i % 3 - 1) * mean;
+    ramp_y += static_cast<double>(i / 3 - 1) * mean;
+    within += pixel.scatter();
+  }
+  // Least squares over a 3 x 3 grid; the means of n samples count n times. Nine means less three parameters
+  // leave six degrees of freedom, and each pixel's samples add n - 1.
+  const Color between = squares - sum * sum * (1.0 / 9) - (ramp_x * ramp_x + ramp_y * ramp_y) * (1.0 / 6);
+  const int n = around[0].count;
+  const Color out = (between * static_cast<double>(n) + within) * (1.0 / (6 + 9 * (n - 1)));
+  return {std::max(0.0, out.r), std::max(0.0, out.g), std::max(0.0, out.b)};
+}
+
+bool StopRule::enough(const SampleSums& pixel, const Color& prior) const {
+  if (!(square_ > 0)) return false;
+  const double n = pixel.count;
+  const Color mean = pixel.mean();
+  const Color single = (kPriorWeight * prior + pixel.scatter()) * (1 / (kPriorWeight + n - 1));
+  const Color of_mean = single * (1 / (n * std::sqrt(n)));
+  // Not-a-number stays one, and is never enough.
+  const double error = visible_variance(mean.r, std::max(of_mean.r, 0.0)) +
+                       visible_variance(mean.g, std::max(of_mean.g, 0.0)) +
+                       visible_variance(mean.b, std::max(of_mean.b, 0.0));
+  return error <= 3 * square_;
+}
+
+}  // namespace rayshade

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// When a pixel has samples enough (SamplingKind::kSobol).
+//
+// Samples come in rounds that double their number, so that what a pixel has is a stratified set at every end
+// of a round. A pixel gets no more when the estimated standard error of its mean is at most the tolerance.
+// The mean of n stratified samples of something with an edge in it, the usual case, has a variance that falls
+// with n^(-3/2); so the error is taken to be sqrt(v) n^(-3/4), v being the variance of a single sample.
+//
+// Few samples tell little about v: four that happen to agree do not show that there is no edge. So v is
+// estimated together with a *prior*: the variance over the first samples of the 3 x 3 pixels around, beyond
+// what a linear ramp explains, which counts as so many further samples of the pixel itself. Calm regions stop
+// with their first samples; pixels beside an edge get some more before they are believed.
+//
+// The choice depends on first samples no farther than kStopReach pixels and on the pixel's own samples: any
+// tile, window or crop gives the same bytes.
+#pragma once
+
+#include <span>
+
+#include "rayshade/math/vec.h"
+
+namespace rayshade {
+
+inline constexpr int kStopReach = 1;
+/// Samples that every pixel gets, where it may have so many.
+inline constexpr int kFirstSamples = 4;
+
+/// The samples of a pixel so far, as sums.
+struct SampleSums {
+  Color sum, squares;
+  int count = 0;
+  int hits = 0;
+  void add(const Color& color, bool hit) {
+    sum += color;
+    squares += color * color;
+    ++count;
+    hits += hit;
+  }
+  Color mean() const { return sum * (1.0 / count); }
+  /// The sum of the squared differences from the mean.
+  Color scatter() const { return squares - sum * sum * (1.0 / count); }
+};
+
+class StopRule {
+ public:
+  /// `tolerance`: of the standard error, mean square over the channels; 0: no pixel stops before it has
+  /// `most` samples.
+  StopRule(double tolerance, int most) : square_(tolerance * tolerance), most_(most) {}
+
+  /// Samples of the first round.
+  int first() const { return square_ > 0 && most_ > kFirstSamples ? kFirstSamples : most_; }
+  /// Samples after the round that follows the one that ended with `count`.
+  int next(int count) const;
+
+  /// The variance of a single sample that the first samples of a pixel's surroundings suggest. `around`: the
+  /// 3 x 3 pixels, row by row, those beyond the screen replaced by the nearest on it; all of equal counts.
+  static Color prior(std::span<const SampleSums, 9> around);
+
+  /// Whether the pixel stops.
+  bool enough(const SampleSums& pixel, const Color& prior) const;
+
+ private:
+  double square_;
+  int most_;
+};
+
+}  // namespace rayshade
