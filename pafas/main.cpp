@@ -12,6 +12,7 @@
 #include "pafas/estimate.h"
 #include "pafas/master.h"
 #include "pafas/mpi_transport.h"
+#include "pafas/package.h"
 #include "pafas/simulator.h"
 #include "pafas/worker.h"
 #include "rayshade/cli/program.h"
@@ -61,7 +62,12 @@ int refuse(int meant) {
 class SingleEngine final : public rayshade::LocalEngine {
  public:
   rayshade::Program kind() const override { return rayshade::Program::kPafas; }
+  rayshade::Provider& provider() override { return files_; }
+  std::uint64_t scene_bytes() const override { return files_.package().size(); }
   int estimate(const rayshade::EnginePlan& plan) override { return pafas::run_estimate(plan, scene_bytes()); }
+
+ private:
+  pafas::RecordingProvider files_;
 };
 
 bool needs_no_mpi(const rayshade::Options& options) {

@@ -53,9 +53,10 @@ void Master::begin(const EnginePlan& plan) {
                       report_.height),
           {});
   }
-  if (alone()) return files_.forget();
-  package_ = files_.package();
+  // One rank alone sends nothing; block costs tell what others would be sent.
+  if (!alone() || plan.options.block_costs) package_ = files_.package();
   files_.forget();
+  if (alone()) return;
   report_.package_bytes = package_.size();
   plan_ = {{}, options_.arguments, plan.scene_hash, plan.format, package_.size()};
   planned_ = true;

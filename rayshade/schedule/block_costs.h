@@ -39,7 +39,7 @@ struct BlockCosts {
   int samples = 1;                 ///< most per pixel and axis
   double tree_fixed_seconds = 0;   ///< spent by every process
   double tree_region_seconds = 0;  ///< contained in the blocks' seconds
-  std::uint64_t scene_bytes = 0;   ///< sent to every process
+  std::uint64_t scene_bytes = 0;   ///< sent to every process; as pafas records them, compressed
   double compile_seconds = 0;      ///< of every process, until it can render
   double result_bytes_per_pixel = 3;
   std::vector<Block> blocks;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -96,6 +97,25 @@ TEST_F(MpiTest, SlavesNeedNoFiles) {
   EXPECT_TRUE(picture() == picture_alone);
   const nlohmann::json found = stats();
   for (const auto& row : found["cluster"]["ranks"]) EXPECT_EQ(row["outcome"], "reported");
+}
+
+TEST_F(MpiTest, BlockCostsTellWhatSlavesAreSent) {
+  std::array<std::string, 2> lines;
+  for (const int ranks : {1, 2}) {
+    Job job(folder(), on_ranks(ranks), "-R 48 32 -S 1 -q -O out.ppm --block-costs costs.txt scene.ray");
+    const Outcome out = job.wait();
+    ASSERT_EQ(out.status, 0) << out.err;
+    const std::string costs = read_file(folder() / "costs.txt");
+    const std::size_t at = costs.find("scene-bytes ");
+    ASSERT_NE(at, std::string::npos);
+    lines[static_cast<std::size_t>(ranks - 1)] = costs.substr(at, costs.find('\n', at) - at);
+  }
+  EXPECT_EQ(lines[0], lines[1]);
+  const double written = static_cast<double>(read_file(folder() / "scene.ray").size() +
+                                             read_file(folder() / "balls.inc").size());
+  const double sent = std::stod(lines[0].substr(12));
+  EXPECT_GT(sent, 200);
+  EXPECT_LT(sent, written);
 }
 
 TEST_F(MpiTest, ErrorsEndTheWholeJobAtOnce) {
