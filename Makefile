@@ -16,7 +16,8 @@ LINT_PACKAGES  := clang clang-tidy clang-format libclang-rt-14-dev
 BENCH_CMAKE := cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DRAYSHADE_BENCH=ON
 
 .DEFAULT_GOAL := help
-.PHONY: help run build check check-long asan tsan stress bench bench-fas bench-scenes bench-paper check-clusters install package lint format fuzz clean \
+.PHONY: help run build check check-long asan tsan stress bench bench-fas bench-scenes bench-accuracy bench-paper \
+        check-clusters install package lint format fuzz clean \
         packages test-packages bench-packages lint-packages
 
 help: ## list the targets
@@ -93,6 +94,13 @@ bench-scenes: bench-packages ## time the procedural databases as whole programs:
 	$(BENCH_CMAKE)
 	cmake --build $(BUILD) -j $(JOBS) --target rayshade spd compare_pictures
 	bench/run-scenes $(BUILD) $(WRITE)
+
+# WRITE=--write puts the table into docs/accuracy.md, the plot into docs/ and all rows into bench/accuracy/figures.csv.
+bench-accuracy: bench-packages ## run time against error: both schemes of sampling, POV-Ray
+	$(call need,python3 librsvg2-bin)
+	$(BENCH_CMAKE)
+	cmake --build $(BUILD) -j $(JOBS) --target rayshade spd picture_errors
+	bench/run-accuracy $(BUILD) $(WRITE)
 
 bench-paper: bench-packages ## the tables of the paper: speed-up, memory, samples, on up to 16 ranks
 	$(call need,python3)
