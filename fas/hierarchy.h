@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "fas/fas.h"
+#include "fas/clip_box.h"
 
 namespace fas {
 
@@ -37,13 +37,9 @@ struct BoxProbe {
   }
 };
 
-/// Whether the ray from `origin` along `direction` may meet `box` within (lo, hi), whatever exact tests that
-/// are off by no more than 64 `condition` units of rounding of the coordinates at hand say.
-bool may_meet(const Bounds& box, double condition, const double* origin, const double* direction, double lo,
-              double hi);
-/// The same, and fills `probe`.
-bool make_probe(const Bounds& box, double condition, const double* origin, const double* direction, double lo,
-                double hi, BoxProbe& probe);
+/// may_meet(), and fills `probe`.
+bool make_probe(const ClipBox& box, double condition, const double* origin, const double* direction,
+                double lo, double hi, BoxProbe& probe);
 
 class Hierarchy {
  public:
@@ -67,6 +63,7 @@ class Hierarchy {
             std::vector<std::uint32_t>& order);
 
   const Bounds& bounds() const { return bounds_; }
+  const ClipBox& clip_box() const { return clip_box_; }
   /// What planes are relative to.
   const Point& center() const { return center_; }
   std::span<const Node> nodes() const { return nodes_; }
@@ -78,6 +75,7 @@ class Hierarchy {
  private:
   std::vector<Node> nodes_;  ///< children come after their parents
   Bounds bounds_;
+  ClipBox clip_box_;
   Point center_{};
 };
 

@@ -258,6 +258,7 @@ Hierarchy::Hierarchy(std::vector<Bounds> boxes, std::span<const std::uint8_t> ma
     }
   }
   for (std::size_t axis = 0; axis < 3; ++axis) center_[axis] = 0.5 * (bounds_.lo[axis] + bounds_.hi[axis]);
+  clip_box_ = ClipBox(bounds_);
   std::vector<Item> items(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {

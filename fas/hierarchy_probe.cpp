@@ -15,17 +15,13 @@ constexpr double kLeastComponent = 1e-18;
 
 double largest_of(const double* v) { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
 
-bool is_empty(const Bounds& box) {
-  return !(box.lo[0] <= box.hi[0] && box.lo[1] <= box.hi[1] && box.lo[2] <= box.hi[2]);
-}
-
 /// What exact tests may be off by: rounding of the origin taken into the space of a primitive and back.
-inline double exact_slack(const Bounds& box, double condition, const double* origin) {
-  return kUnit * condition * (largest_of(origin) + largest_of(box.lo.data()) + largest_of(box.hi.data()));
+inline double exact_slack(const ClipBox& box, double condition, const double* origin) {
+  return kUnit * condition * (largest_of(origin) + box.size);
 }
 
 /// The slab test in double precision on the box widened by `slack`: the stay within (lo, hi).
-[[gnu::always_inline]] inline bool clip(const Bounds& box, double slack, const double* o, const double* d,
+[[gnu::always_inline]] inline bool clip(const ClipBox& box, double slack, const double* o, const double* d,
                                         const double* inverse, double lo, double hi, double& entry) {
   double exit = hi;
   entry = lo;
@@ -44,28 +40,36 @@ inline double exact_slack(const Bounds& box, double condition, const double* ori
 
 }  // namespace
 
-bool may_meet(const Bounds& box, double condition, const double* origin, const double* direction, double lo,
+ClipBox::ClipBox(const Bounds& box) : lo(box.lo), hi(box.hi) {
+  empty = !(lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2]);
+  size = largest_of(lo.data()) + largest_of(hi.data());
+  for (std::size_t i = 0; i < 3; ++i) {
+    center[i] = 0.5 * (lo[i] + hi[i]);
+    extent = std::max(extent, hi[i] - lo[i]);
+  }
+}
+
+bool may_meet(const ClipBox& box, double condition, const double* origin, const double* direction, double lo,
               double hi) {
-  if (is_empty(box)) return false;
+  if (box.empty) return false;
   const double inverse[3] = {1 / direction[0], 1 / direction[1], 1 / direction[2]};
   double entry = 0;
   return clip(box, exact_slack(box, condition, origin), origin, direction, inverse, lo, hi, entry);
 }
 
-bool make_probe(const Bounds& box, double condition, const double* origin, const double* direction, double lo,
-                double hi, BoxProbe& probe) {
-  if (is_empty(box)) return false;
+bool make_probe(const ClipBox& box, double condition, const double* origin, const double* direction,
+                double lo, double hi, BoxProbe& probe) {
+  if (box.empty) return false;
   const double exact = exact_slack(box, condition, origin);
   const double inverse[3] = {1 / direction[0], 1 / direction[1], 1 / direction[2]};
   if (!clip(box, exact, origin, direction, inverse, lo, hi, probe.entry)) return false;
   const double largest = largest_of(direction);
-  double start[3], far = 0, extent = 0;
+  double start[3], far = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    start[i] = origin[i] + probe.entry * direction[i] - 0.5 * (box.lo[i] + box.hi[i]);
+    start[i] = origin[i] + probe.entry * direction[i] - box.center[i];
     far = std::max(far, std::fabs(start[i]));
-    extent = std::max(extent, box.hi[i] - box.lo[i]);
   }
-  const double slack = 0x1p-21 * (far + extent) + exact + kUnit * std::fabs(probe.entry) * largest;
+  const double slack = 0x1p-21 * (far + box.extent) + exact + kUnit * std::fabs(probe.entry) * largest;
   probe.usable = largest > 1e-280 && largest < 1e280 && slack < 1e30 && far < 1e30;
   if (!probe.usable) return true;
   probe.scale = largest;

@@ -124,7 +124,7 @@ void Tracer::Parts::through_hierarchy(Job& job, std::uint32_t i, const Cut& cut)
   const Ray& ray = job.rays[i];
   const Hierarchy& hierarchy = *structure.hierarchy;
   BoxProbe probe;
-  if (!make_probe(hierarchy.bounds(), structure.options.condition, ray.origin.data(), ray.direction.data(),
+  if (!make_probe(hierarchy.clip_box(), structure.options.condition, ray.origin.data(), ray.direction.data(),
                   ray.near, job.limit(i), probe)) {
     return;
   }

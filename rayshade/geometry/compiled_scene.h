@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "fas/clip_box.h"
 #include "rayshade/geometry/hit.h"
 #include "rayshade/geometry/ray.h"
 #include "rayshade/geometry/shapes.h"
@@ -107,6 +108,7 @@ struct Group {
   std::uint32_t unbounded = 0;         ///< how many are unbounded
   std::uint64_t order_span = 0;        ///< how many orders its leaves use, instances' contents included
   Bounds3 bounds;                      ///< of the bounded leaves, over the frame's shutter interval
+  fas::ClipBox clip_box;               ///< of the same
   double condition = 1;                ///< largest growth of rounding errors by the placements below
   bool few_simple = false;             ///< at most two bounded leaves, cheaper to test than a box
   bool solid = false;                  ///< one closed solid: whoever leaves it was inside its bounds

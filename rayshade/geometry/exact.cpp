@@ -113,10 +113,16 @@ bool occludes(TraceContext& context, LeafId id, const Leaf& leaf, const Ray& ray
   return improve(context, id, leaf, ray, local, lo, mask, 0, hit) && before_far_limit(hit, hi);
 }
 
-/// Runs `test(first, last)` over runs of leaves of a group that the ray may meet, until it answers true.
+/// Runs `test(leaf)` over leaves of a group that the ray may meet, until it answers true.
 template <class Limit, class Test>
 bool over_group(TraceContext& context, const Group& group, const Ray& ray, double lo, Opacity mask,
-                const Limit& limit, const Test& test) {
+                const Limit& limit, const Test& test_leaf) {
+  const auto test = [&](LeafId first, LeafId last) {
+    for (LeafId id = first; id < last; ++id) {
+      if (test_leaf(id)) return true;
+    }
+    return false;
+  };
   // Of the world: not of the groups below the leaves that are tested here.
   const fas::Cut cut = std::exchange(context.cut, {});
   if (context.scratch.brute_force) return test(group.first, group.first + group.count);
@@ -125,14 +131,14 @@ bool over_group(TraceContext& context, const Group& group, const Ray& ray, doubl
   if (group.unbounded == group.count) return false;
   if (group.few_simple) return test(bounded, group.first + group.count);
   ++context.bounds_tests;
+  const double o[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
+  const double d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
   if (!group.hierarchy) {
-    return clip_to_box(group.bounds, group.condition, ray, lo, limit()) &&
+    return fas::may_meet(group.clip_box, group.condition, o, d, lo, limit()) &&
            test(bounded, group.first + group.count);
   }
   fas::BoxProbe probe;
-  const double o[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
-  const double d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
-  if (!fas::make_probe(group.hierarchy->bounds(), group.condition, o, d, lo, limit(), probe)) return false;
+  if (!fas::make_probe(group.hierarchy->clip_box(), group.condition, o, d, lo, limit(), probe)) return false;
   if (!probe.usable) return test(bounded, group.first + group.count);
   return fas::traverse(*group.hierarchy, cut, probe, mask, context.bounds_tests, limit,
                        [&](std::uint32_t first, std::uint32_t count) {
@@ -141,13 +147,6 @@ bool over_group(TraceContext& context, const Group& group, const Ray& ray, doubl
 }
 
 }  // namespace
-
-bool clip_to_box(const Bounds3& box, double condition, const Ray& ray, double lo, double hi) {
-  const double o[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
-  const double d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
-  return fas::may_meet({{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}}, condition, o, d, lo,
-                       hi);
-}
 
 bool improve_by_leaf(TraceContext& context, LeafId id, const Ray& ray, double lo, Opacity mask,
                      std::uint64_t base, Hit& best) {
@@ -166,12 +165,10 @@ bool improve_by_group(TraceContext& context, std::uint32_t index, const Ray& ray
   bool improved = false;
   over_group(
       context, context.scene.groups[index], ray, lo, mask, [&] { return best.shape.t; },
-      [&](LeafId first, LeafId last) {
-        for (LeafId id = first; id < last; ++id) {
-          const Leaf& leaf = context.scene.leaves[id];
-          if ((leaf.opacity & mask) == 0) continue;
+      [&](LeafId id) {
+        const Leaf& leaf = context.scene.leaves[id];
+        if ((leaf.opacity & mask) != 0)
           improved |= improve(context, id, leaf, ray, local, lo, mask, base, best);
-        }
         return false;
       });
   return improved;
@@ -182,12 +179,7 @@ bool group_occludes(TraceContext& context, std::uint32_t index, const Ray& ray, 
   LocalRay local(ray);
   return over_group(
       context, context.scene.groups[index], ray, lo, mask, [&] { return hi; },
-      [&](LeafId first, LeafId last) {
-        for (LeafId id = first; id < last; ++id) {
-          if (occludes(context, id, context.scene.leaves[id], ray, local, lo, hi, mask)) return true;
-        }
-        return false;
-      });
+      [&](LeafId id) { return occludes(context, id, context.scene.leaves[id], ray, local, lo, hi, mask); });
 }
 
 void ask_world(const CompiledScene& scene, const NearestQuery& query, NearestAnswer& answer,

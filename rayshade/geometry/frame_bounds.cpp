@@ -239,6 +239,8 @@ void CompiledScene::rebuild_group(Group& group, bool hierarchies) {
       leaf_boxes.push_back({{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}});
     }
   }
+  const Vec3 &lo = group.bounds.lo, &hi = group.bounds.hi;
+  group.clip_box = fas::ClipBox({{lo.x, lo.y, lo.z}, {hi.x, hi.y, hi.z}});
   group.unbounded = static_cast<std::uint32_t>(unbounded.size());
   group.few_simple =
       bounded.size() + empty.size() <= 2 && std::all_of(bounded.begin(), bounded.end(), [&](LeafId id) {

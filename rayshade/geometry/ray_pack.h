@@ -57,7 +57,7 @@ RayPack::Mask improve_pack(const CompiledScene& scene, const Leaf& leaf, std::in
 /// Which rays of `mask` the leaf stops between lo and t (before the far limit in the sense of its kind).
 RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack,
                            RayPack::Mask mask);
-/// Which rays of `mask` may meet the box within (lo, t), whatever the exact tests round (clip_to_box).
+/// Which rays of `mask` may meet the box within (lo, t), whatever the exact tests round (fas::may_meet).
 RayPack::Mask clip_pack(const Bounds3& box, double condition, const RayPack& pack, RayPack::Mask mask);
 
 }  // namespace rayshade

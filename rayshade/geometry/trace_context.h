@@ -36,9 +36,6 @@ inline void start_search(Hit& best, double hi) {
   best.rank = std::numeric_limits<std::uint64_t>::max();
 }
 
-/// Whether the ray may meet the box within (lo, hi), whatever exact tests of leaves under placements of that
-/// condition (Group::condition) round.
-bool clip_to_box(const Bounds3& box, double condition, const Ray& ray, double lo, double hi);
 bool improve_by_leaf(TraceContext& context, LeafId leaf, const Ray& ray, double lo, Opacity mask,
                      std::uint64_t base, Hit& best);
 /// Whether a leaf that is within `mask` as a whole lies between lo and hi.
