@@ -153,7 +153,7 @@ std::vector<OptionSpec> make_table() {
        {"T"},
        kSampling,
        "With --sampling sobol: the estimated standard error, in units of the picture's full range, at "
-       "which a pixel gets no more samples; 0.01 without it, 0 for all samples everywhere.",
+       "which a pixel of nine samples gets no more; 0.01 without it, 0 for all samples everywhere.",
        [](Options& o, Values v) { o.settings.tolerance = parse_real(v[0], "--tolerance"); }});
   t.push_back({'j',
                "toggle-jitter",

@@ -36,20 +36,16 @@ EyeSample BlockRenderer::eye_sample(int x, int y, int k) const {
   out.sample_number = settings.sobol() ? 0 : frame_.grid->sample_number(k);
   const SampleNumbers numbers(settings, frame_.shading.frame, out.x, out.y, out.sample);
   const bool moves = settings.sobol() || settings.jitter;
-  std::array<double, 2> jitter{};
-  if (moves) jitter = numbers.two(dimension(kRootPath, Purpose::kPixel));
-  const auto offset = settings.sobol() ? frame_.filter->offset(jitter[0], jitter[1])
-                                       : frame_.grid->offset(k, jitter[0], jitter[1]);
+  const auto chosen = numbers.eye(moves, frame_.camera->has_lens(), moves && settings.shutter > 0);
+  const auto [xi, zeta] = chosen.pixel;
+  const auto offset = settings.sobol() ? frame_.filter->offset(xi, zeta) : frame_.grid->offset(k, xi, zeta);
   const double u = x + offset[0], v = y + offset[1];
   if (frame_.camera->has_lens()) {
-    const auto lens = numbers.two(dimension(kRootPath, Purpose::kLens));
-    out.ray = frame_.camera->lens_ray(u, v, out.sample_number, lens[0], lens[1]);
+    out.ray = frame_.camera->lens_ray(u, v, out.sample_number, chosen.lens[0], chosen.lens[1]);
   } else {
     out.ray = frame_.camera->ray(u, v);
   }
-  const double xi =
-      moves && settings.shutter > 0 ? numbers.two(dimension(kRootPath, Purpose::kTime))[0] : 0.0;
-  out.ray.time = frame_.camera->time(frame_.shading.frame, out.sample_number, xi);
+  out.ray.time = frame_.camera->time(frame_.shading.frame, out.sample_number, chosen.moment);
   return out;
 }
 

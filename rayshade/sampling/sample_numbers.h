@@ -16,6 +16,26 @@ class SampleNumbers {
                 std::uint32_t sample)
       : settings_(settings), frame_(frame), x_(x), y_(y), sample_(sample) {}
 
+  /// What the eye ray needs: place in the pixel, two numbers for the lens, one for the moment; in [0, 1).
+  /// Those that are not wanted mean nothing.
+  struct Eye {
+    std::array<double, 2> pixel{}, lens{};
+    double moment = 0;
+  };
+  Eye eye(bool pixel, bool lens, bool moment) const {
+    Eye out;
+    if (settings_.sobol() && (lens || moment)) {
+      const auto all = sobol5(pixel_stream(settings_.seed, frame_, x_, y_),
+                              dimension(kRootPath, Purpose::kPixel), sample_);
+      // The third dimension goes best with the first two.
+      return {{all[0], all[1]}, {all[2], all[3]}, lens ? all[4] : all[2]};
+    }
+    if (pixel) out.pixel = two(dimension(kRootPath, Purpose::kPixel));
+    if (lens) out.lens = two(dimension(kRootPath, Purpose::kLens));
+    if (moment) out.moment = two(dimension(kRootPath, Purpose::kTime))[0];
+    return out;
+  }
+
   /// Two numbers in [0, 1) for a dimension (random.h).
   std::array<double, 2> two(std::uint64_t dimension) const { return two_of_several(dimension, 0, 1); }
   /// The same where each sample needs `turns` pairs: pair number `turn`. Independent numbers look only at the

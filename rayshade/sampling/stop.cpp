@@ -49,7 +49,8 @@ bool StopRule::enough(const SampleSums& pixel, const Color& prior) const {
   const double n = pixel.count;
   const Color mean = pixel.mean();
   const Color single = (kPriorWeight * prior + pixel.scatter()) * (1 / (kPriorWeight + n - 1));
-  const Color of_mean = single * (1 / (n * std::sqrt(n)));
+  // n^(-3/2), and what is allowed grows with (n / 9)^(1/2).
+  const Color of_mean = single * (3 / (n * n));
   // Not-a-number stays one, and is never enough.
   const double error = visible_variance(mean.r, std::max(of_mean.r, 0.0)) +
                        visible_variance(mean.g, std::max(of_mean.g, 0.0)) +

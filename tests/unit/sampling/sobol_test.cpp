@@ -30,6 +30,62 @@ TEST(Sobol, FirstTwoDimensions) {
   }
 }
 
+TEST(Sobol, FurtherDimensions) {
+  // The first points by hand, from the direction numbers 1, 3, 3; 1, 3, 1, 5; 1, 1, 1, 11 over 2, 4, 8, 16.
+  const double expected[8][3] = {{0, 0, 0},          {.5, .5, .5},       {.75, .75, .25},
+                                 {.25, .25, .75},    {.375, .125, .125}, {.875, .625, .625},
+                                 {.625, .875, .375}, {.125, .375, .875}};
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const auto bits = sobol_bits_further(i);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(bits[k] * 0x1p-32, expected[i][k]) << i << " " << k;
+  }
+  const auto sixteenth = sobol_bits_further(8);
+  EXPECT_EQ(sixteenth[1] * 0x1p-32, 5 / 16.0);
+  EXPECT_EQ(sixteenth[2] * 0x1p-32, 11 / 16.0);
+}
+
+/// In how many boxes of 2^columns x 2^rows the points of a run are, in two of the five dimensions.
+std::size_t boxes_met(std::uint64_t stream, std::uint32_t first, std::uint32_t count, std::size_t a,
+                      std::size_t b, int columns, int rows) {
+  std::set<int> boxes;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    const auto p = sobol5(stream, 5, i);
+    boxes.insert(static_cast<int>(std::ldexp(p[a], columns)) << 10 |
+                 static_cast<int>(std::ldexp(p[b], rows)));
+  }
+  return boxes.size();
+}
+
+TEST(Sobol, EyeRaysAreStratifiedInAllTheirDimensionsTogether) {
+  for (int pixel = 0; pixel < 20; ++pixel) {
+    const std::uint64_t stream = pixel_stream(7, 0, static_cast<std::uint32_t>(pixel), 3);
+    for (int m = 0; m <= 8; ++m) {
+      const std::uint32_t count = 1u << m;
+      for (std::uint32_t first = 0; first < 3 * count; first += count) {
+        for (std::size_t a = 0; a < 5; ++a)
+          ASSERT_EQ(boxes_met(stream, first, count, a, a, m, 0), count) << a << " of " << count;
+        for (int columns = 0; columns <= m; ++columns)
+          ASSERT_EQ(boxes_met(stream, first, count, 0, 1, columns, m - columns), count);
+        // The third with the first two: at worst two points to a box.
+        for (int columns = 0; columns < m; ++columns) {
+          for (const std::size_t a : {0u, 1u})
+            ASSERT_EQ(boxes_met(stream, first, count, a, 2, columns, m - 1 - columns), count / 2) << m;
+        }
+      }
+    }
+  }
+}
+
+TEST(Sobol, EyeRaysBeginWithThePointsOfOthers) {
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const std::uint64_t stream = pixel_stream(3, 1, i % 7, 2);
+    const auto two = sobol2(stream, 9, i);
+    const auto five = sobol5(stream, 9, i);
+    EXPECT_EQ(five[0], two[0]);
+    EXPECT_EQ(five[1], two[1]);
+  }
+}
+
 TEST(Sobol, ScramblingKeepsCommonDigits) {
   for (std::uint32_t key = 1; key < 200; ++key) {
     for (int k = 1; k < 31; ++k) {
