@@ -9,14 +9,14 @@ SUDO    := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 # What the program is built from, and what only the tests and the extras need.
 PACKAGES       := g++ cmake ninja-build flex bison pkg-config libpng-dev zlib1g-dev libfmt-dev libsleef-dev \
                   librandom123-dev libopenexr-dev libhwy-dev libopenmpi-dev openmpi-bin
-TEST_PACKAGES  := libgtest-dev libgmock-dev nlohmann-json3-dev libboost-dev man-db groff-base
+TEST_PACKAGES  := libgtest-dev libgmock-dev nlohmann-json3-dev libboost-dev man-db groff-base python3 valgrind
 BENCH_PACKAGES := libbenchmark-dev libembree-dev povray
 LINT_PACKAGES  := clang clang-tidy clang-format libclang-rt-14-dev
 
 BENCH_CMAKE := cmake -S . -B $(BUILD) -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYSHADE_TESTS=OFF -DRAYSHADE_BENCH=ON
 
 .DEFAULT_GOAL := help
-.PHONY: help run build check check-long asan tsan stress bench bench-fas bench-scenes bench-accuracy bench-paper \
+.PHONY: help run build check check-long asan tsan stress bench bench-fas bench-scenes bench-accuracy bench-paper bench-skip \
         check-clusters install package lint format fuzz clean \
         packages test-packages bench-packages lint-packages
 
@@ -107,6 +107,13 @@ bench-paper: bench-packages ## the tables of the paper: speed-up, memory, sample
 	$(BENCH_CMAKE)
 	cmake --build $(BUILD) -j $(JOBS) --target rayshade pafas spd
 	bench/run-paper $(BUILD) $(WRITE)
+
+# WRITE=--write puts the tables into docs/accuracy.md.
+bench-skip: packages ## what a scene spends on features that it does not use, in instructions
+	$(call need,python3 valgrind)
+	cmake -S . -B build-skip -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS=-g -DRAYSHADE_TESTS=OFF
+	cmake --build build-skip -j $(JOBS) --target rayshade
+	bench/run-skip build-skip $(WRITE)
 
 install: build ## install programs, scenes, manuals and completion under PREFIX
 	$(SUDO) cmake --install $(BUILD) --prefix $(PREFIX)

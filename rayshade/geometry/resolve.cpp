@@ -160,8 +160,7 @@ TextureCoordinates texture_coordinates(const CompiledScene& scene, const Hit& hi
   });
 }
 
-bool has_textures(const CompiledScene& scene, const Hit& hit) {
-  if (!scene.has_textures) return false;
+bool has_textures_on_path(const CompiledScene& scene, const Hit& hit) {
   const auto textured = [&](LeafId id) {
     const std::uint32_t path = scene.leaves[id].path;
     return path != kNone && scene.path_textured[path] != 0;

@@ -53,7 +53,10 @@ const Surface& surface_of(const CompiledScene& scene, const Hit& hit);
 TextureCoordinates texture_coordinates(const CompiledScene& scene, const Hit& hit, const Vec3& x,
                                        const Vec3& facing_normal);
 /// True where some node on the path has a texture.
-bool has_textures(const CompiledScene& scene, const Hit& hit);
+bool has_textures_on_path(const CompiledScene& scene, const Hit& hit);
+inline bool has_textures(const CompiledScene& scene, const Hit& hit) {
+  return scene.has_textures && has_textures_on_path(scene, hit);
+}
 
 /// The point, normals and flags in world space, for hits without textures on their path (otherwise
 /// rayshade/texture does it level by level).

@@ -138,6 +138,9 @@ void RayTree::ask_nearest(const SampleOf& sample_of) {
   scene_.intersector->nearest(nearest_queries_, {nearest_answers_.data(), count}, scratch_);
 }
 
+/// Whether secondary rays may leave a surface.
+inline bool may_spawn(const Surface& surface) { return surface.reflectance != 0 || surface.transparency > 0; }
+
 /// From the answers of a batch to its lights and its secondary rays.
 void RayTree::shade_batch(std::span<const EyeSample> samples, std::span<SampleResult> results) {
   if (shades_.size() < batch_nodes_.size()) shades_.resize(batch_nodes_.size());
@@ -152,7 +155,7 @@ void RayTree::shade_batch(std::span<const EyeSample> samples, std::span<SampleRe
     }
   }
   for (std::size_t i = 0; i < shade_count_; ++i) {
-    spawn(shades_[i]);
+    if (may_spawn(*shades_[i].surface)) spawn(shades_[i]);
     if (nodes_[shades_[i].node].waiting == 0) finish(shades_[i].node, results);
   }
 }

@@ -147,6 +147,7 @@ class RayTree {
   std::vector<OcclusionQuery> shadow_queries_;
   std::vector<OcclusionAnswer> shadow_answers_;
   std::vector<std::uint32_t> shadow_owner_;  ///< index in lights_ of each shadow query
+  bool any_highlight_ = false;               ///< among lights_
   std::vector<double> power_bases_, power_exponents_;
   std::vector<std::uint32_t> power_owner_;  ///< index in lights_ of each power
   std::vector<Walk> walks_;

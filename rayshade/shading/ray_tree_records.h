@@ -66,7 +66,7 @@ struct RayTree::PendingLight {
   Color color;           ///< before shadows; after them when answered
   bool blocked = false;
   bool skipped = false;     ///< has no effect; kept only for the observer
-  bool highlights = false;  ///< there is a highlight
+  bool highlights = false;  ///< there is a highlight, if the light arrives
 };
 
 /// Tells for whom the queries of a span are, as long as it lives.

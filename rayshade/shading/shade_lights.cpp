@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The lights of a batch of hits: which matter, the shadow rays they need, and their sum (shading.md 2.4, 4).
 #include <algorithm>
+#include <cmath>
 
 #include "rayshade/math/functions.h"
 #include "rayshade/sampling/sample_numbers.h"
@@ -38,6 +39,7 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
   lights_.clear();
   shadow_queries_.clear();
   shadow_owner_.clear();
+  any_highlight_ = false;
   const RenderSettings& settings = *scene_.settings;
   const Opacity mask =
       settings.transparent_shadows && scene_.compiled->has_transparent ? kOpaque : kAnyOpacity;
@@ -88,6 +90,9 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
       pending.color = light_in.color;
       pending.skipped = skipped;
       if (skipped) continue;
+      pending.highlights = c > 0 ? answers_highlight && highlight > 0
+                                 : surface.transmitted_exponent >= kEpsilon && highlight < 0;
+      any_highlight_ |= pending.highlights;
       if (!settings.shadows || light.no_shadow || surface.no_shadow) {
         ++counts_.skipped_unshadowed;
       } else {
@@ -151,14 +156,11 @@ void RayTree::raise_highlights() {
   power_owner_.clear();
   for (std::uint32_t i = 0; i < lights_.size(); ++i) {
     PendingLight& pending = lights_[i];
-    if (pending.skipped || pending.blocked) continue;
+    if (!pending.highlights || pending.blocked) continue;
     const Surface& surface = *shades_[pending.shade].surface;
     const bool front = pending.cosine > 0;
-    const double base = front ? pending.highlight : -pending.highlight;
+    const double base = std::fabs(pending.highlight);
     const double exponent = front ? surface.specular_exponent : surface.transmitted_exponent;
-    pending.highlight = 0;
-    if (!(exponent >= kEpsilon && base > 0)) continue;
-    pending.highlights = true;
     if (const unsigned whole = whole_exponent(exponent)) {
       pending.highlight = power(base, whole);
       continue;
@@ -174,7 +176,7 @@ void RayTree::raise_highlights() {
 
 /// Section 2.4 steps 3 and 4, in the fixed order of the lights.
 void RayTree::combine_lights() {
-  raise_highlights();
+  if (any_highlight_) raise_highlights();
   for (const PendingLight& pending : lights_) {
     const Shade& shade = shades_[pending.shade];
     Node& node = nodes_[shade.node];

@@ -262,11 +262,10 @@ void evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, 
   if (&surface != &out.surface) out.surface = surface;
 }
 
-const Surface& evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, const Hit& hit,
-                            const Ray& world_ray, const SampleContext& sample, TraceScratch& scratch,
-                            WorldHit& world, Surface& textured) {
-  const PathNeeds needs =
-      has_textures(scene, hit) ? needs_of(scene, textures, hit, world_ray.time, scratch, false) : PathNeeds{};
+const Surface& evaluate_textured_hit(const CompiledScene& scene, const CompiledTextures& textures,
+                                     const Hit& hit, const Ray& world_ray, const SampleContext& sample,
+                                     TraceScratch& scratch, WorldHit& world, Surface& textured) {
+  const PathNeeds needs = needs_of(scene, textures, hit, world_ray.time, scratch, false);
   if (needs.levels == 0) {
     resolve_world(scene, hit, world_ray, scratch, world);
     return surface_of(scene, hit);

@@ -44,11 +44,21 @@ struct TexturedHit {
 void evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, const Hit& hit,
                   const Ray& world_ray, const SampleContext& sample, TraceScratch& scratch, TexturedHit& out);
 
-/// The same without copying a surface that no texture changes: returns that of the scene, or `textured`,
-/// which then holds it. (What the shading of millions of hits asks for.)
-const Surface& evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures, const Hit& hit,
-                            const Ray& world_ray, const SampleContext& sample, TraceScratch& scratch,
-                            WorldHit& world, Surface& textured);
+/// The same of a hit that has textures, without copying a surface that none of them changes: returns that of
+/// the scene, or `textured`, which then holds it.
+const Surface& evaluate_textured_hit(const CompiledScene& scene, const CompiledTextures& textures,
+                                     const Hit& hit, const Ray& world_ray, const SampleContext& sample,
+                                     TraceScratch& scratch, WorldHit& world, Surface& textured);
+
+/// The same of any hit. (What the shading of millions of hits asks for.)
+inline const Surface& evaluate_hit(const CompiledScene& scene, const CompiledTextures& textures,
+                                   const Hit& hit, const Ray& world_ray, const SampleContext& sample,
+                                   TraceScratch& scratch, WorldHit& world, Surface& textured) {
+  if (has_textures(scene, hit))
+    return evaluate_textured_hit(scene, textures, hit, world_ray, sample, scratch, world, textured);
+  resolve_world(scene, hit, world_ray, scratch, world);
+  return surface_of(scene, hit);
+}
 
 /// What a shadow ray needs of a transparent surface that it passes (shading.md 5).
 struct Transmittance {
