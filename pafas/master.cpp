@@ -111,7 +111,8 @@ void Master::handle(const Message& message) {
       return;
     }
     case Kind::kPull:
-      send_pieces(from, unpack<Pull>(message.bytes));
+      pieces_.ask(from, unpack<Pull>(message.bytes));
+      pieces_.serve(transport_, package_, pieces_of(package_.size()));
       return;
     case Kind::kReady: {
       const auto ready = unpack<Ready>(message.bytes);
@@ -162,6 +163,7 @@ void Master::greet(int rank, const Hello& hello) {
     tell(rank, Leave{report_.lost_ranks > 0});
     return;
   }
+  if (plan.refusal.empty()) plan.source = source_for(rank);
   if (!plan.refusal.empty())
     lose(rank, Phase::kFailed, plan.refusal);
   else if (at.phase == Phase::kExpected)
@@ -171,13 +173,15 @@ void Master::greet(int rank, const Hello& hello) {
   tell(rank, plan);
 }
 
-void Master::send_pieces(int rank, const Pull& pull) {
-  const std::uint64_t pieces = (package_.size() + Piece::kBytes - 1) / Piece::kBytes;
-  if (pull.first > pieces) return;
-  const std::uint64_t end = std::min(pieces, pull.first + std::min<std::uint64_t>(pull.count, 1024));
-  for (std::uint64_t number = pull.first; number < end; ++number)
-    tell(rank, Piece{number, package_.substr(static_cast<std::size_t>(number * Piece::kBytes),
-                                             static_cast<std::size_t>(Piece::kBytes))});
+/// Where a slave that can take part gets the package: from the one above it in the tree, the first time.
+int Master::source_for(int rank) {
+  if (std::find(greeted_.begin(), greeted_.end(), rank) != greeted_.end()) return 0;
+  const int above = place_above(static_cast<int>(greeted_.size()));
+  greeted_.push_back(rank);
+  if (above < 0) return 0;
+  const int source = greeted_[static_cast<std::size_t>(above)];
+  const Phase phase = ranks_[static_cast<std::size_t>(source)].phase;
+  return phase == Phase::kLoading || phase == Phase::kWorking ? source : 0;
 }
 
 void Master::lose(int number, Phase phase, const std::string& why) {

@@ -14,6 +14,7 @@
 #include "pafas/message.h"
 #include "pafas/package.h"
 #include "pafas/queue_feed.h"
+#include "pafas/relay.h"
 #include "pafas/run_report.h"
 #include "pafas/timing.h"
 #include "pafas/transport.h"
@@ -70,7 +71,7 @@ class Master final : public rayshade::Engine {
   void serve();
   void handle(const Message& message);
   void greet(int rank, const Hello& hello);
-  void send_pieces(int rank, const Pull& pull);
+  int source_for(int rank);
   void take_results(int rank, const Results& results);
   void take_own_results();
   void take_result(int rank, const Result& result);
@@ -92,6 +93,8 @@ class Master final : public rayshade::Engine {
   bool planned_ = false, over_ = false, dedicated_ = false;
   std::vector<std::pair<int, Hello>> early_;  ///< slaves that came before there was a plan
   std::string package_;
+  PieceServer pieces_;
+  std::vector<int> greeted_;  ///< slaves, by their place in the tree that passes the package on
   RunReport report_;
   rayshade::Renderer* renderer_ = nullptr;
   const rayshade::Options* run_options_ = nullptr;

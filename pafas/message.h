@@ -7,6 +7,7 @@
 //                               leave)
 //   Pull: pieces from..to       ->
 //                               <-     Piece, one after the other, small enough to be sent at once
+//   (to and from another slave where the plan names one: relay.h)
 //   Ready: I have compiled it   ->
 //                               <-     Work: blocks of a frame
 //   Results: blocks, and whether
@@ -17,9 +18,10 @@
 //   Report: what I did          ->
 //   Failed, at any time: why    ->
 //
-// The master only ever answers, and answers with little, so that a slave that has died leaves nothing behind
-// that would have to be waited for. Every message may be lost or come twice without harm: blocks are leased,
-// pieces are asked for again, and the first result of a block counts.
+// The master, like a slave that passes the package on, only ever answers, and answers with little, so that a
+// slave that has died leaves nothing behind that would have to be waited for. Every message may be lost or
+// come twice without harm: blocks are leased, pieces are asked for again, and the first result of a block
+// counts.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +36,7 @@
 namespace pafas {
 
 /// Changes whenever a message does.
-inline constexpr std::uint32_t kProtocol = 1;
+inline constexpr std::uint32_t kProtocol = 2;
 
 enum class Kind : std::uint8_t {
   kHello,
@@ -66,6 +68,7 @@ struct Plan {
   std::string scene_hash;
   rayshade::PictureFormat format;
   std::uint64_t package_bytes = 0;  ///< compressed files: Package
+  std::int32_t source = 0;          ///< the rank to pull it from
 };
 
 struct Pull {
@@ -141,7 +144,7 @@ void fields(Archive& a, Hello& m) {
 template <class Archive>
 void fields(Archive& a, Plan& m) {
   a(m.refusal, m.arguments, m.scene_hash, m.format.storage, m.format.encoding.gamma, m.format.encoding.srgb,
-    m.format.layers, m.package_bytes);
+    m.format.layers, m.package_bytes, m.source);
 }
 template <class Archive>
 void fields(Archive& a, Pull& m) {

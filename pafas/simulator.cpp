@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "pafas/relay.h"
 #include "rayshade/cli/json.h"
 #include "rayshade/schedule/granularity.h"
 
@@ -168,7 +169,10 @@ void Simulation::start_ranks() {
   std::mt19937_64 random(options_.seed);
   std::uniform_real_distribution<double> even(0, 1);
   double speeds = 0;
-  double link_free = options_.start_seconds;
+  // When each has the package, and when its link is free to pass it on.
+  std::vector<double> has(static_cast<std::size_t>(options_.ranks), options_.start_seconds);
+  std::vector<double> link_free = has;
+  double greeted = options_.start_seconds;
   const double guess = report_.work_seconds / options_.ranks;
   for (int i = 0; i < options_.ranks; ++i) {
     Rank& it = rank(i);
@@ -181,9 +185,14 @@ void Simulation::start_ranks() {
     const double death = even(random) * guess;
     if (i > 0) {
       const double bytes = static_cast<double>(costs_.scene_bytes);
-      link_free += options_.service_seconds + bytes / options_.bytes_per_second;
-      it.ready = link_free + 2 * options_.latency_seconds +
-                 options_.compile_seconds.value_or(costs_.compile_seconds);
+      greeted += options_.service_seconds;
+      const int source = place_above(i - 1) + 1;  // rank i is greeted as number i - 1
+      double& link = link_free[static_cast<std::size_t>(source)];
+      link = std::max({link, greeted + 2 * options_.latency_seconds, has[static_cast<std::size_t>(source)]}) +
+             bytes / options_.bytes_per_second;
+      double& here = has[static_cast<std::size_t>(i)];
+      here = link_free[static_cast<std::size_t>(i)] = link + options_.latency_seconds;
+      it.ready = here + options_.compile_seconds.value_or(costs_.compile_seconds);
       count(bytes + kMessageBytes);
       if (dies) at(it.ready + death, What::kDeath, i);
     }

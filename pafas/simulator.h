@@ -3,13 +3,13 @@
 // book that the master uses.
 //
 // The model. Rank 0 is the master: a server that handles one message after the other, each in a fixed time
-// and a time by its bytes. Every other rank starts, gets the scene over the master's link, which sends to one
-// rank after the other, compiles it, builds what every process builds, and asks for work. Messages take a
-// latency and a time by their bytes. A worker asks again when no block waits for it (granularity.h). A block
-// takes its recorded seconds divided by the worker's speed, without the part that went into trees; that part,
-// for each region of the picture (32 x 32 of them) that the block touches, is spent by every worker that
-// comes there first. If the master renders, it does so without messages and beside its service. Ranks have
-// one thread each.
+// and a time by its bytes. Every other rank starts, gets the scene from the one above it in the tree of
+// relay.h, as soon as that one has all of it, over a link that sends to one rank after the other, compiles
+// it, builds what every process builds, and asks for work. Messages take a latency and a time by their bytes.
+// A worker asks again when no block waits for it (granularity.h). A block takes its recorded seconds divided
+// by the worker's speed, without the part that went into trees; that part, for each region of the picture (32
+// x 32 of them) that the block touches, is spent by every worker that comes there first. If the master
+// renders, it does so without messages and beside its service. Ranks have one thread each.
 #pragma once
 
 #include <cstdint>

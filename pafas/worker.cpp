@@ -59,7 +59,7 @@ int Worker::run() {
   while (!leaving_) {
     try {
       while (std::optional<Message> message = transport_.receive()) {
-        heard_ = seconds_now();
+        if (message->from == 0) heard_ = seconds_now();
         idle_polls_ = 0;
         handle(*message);
       }
@@ -117,6 +117,13 @@ void Worker::wait() {
 void Worker::keep_alive() {
   const double now = seconds_now();
   if (now - said_ > options_.timing.alive) tell(Alive{now});
+  if (plan_ && piece_ < pieces_ && source_ != 0 && now - piece_at_ > options_.timing.relay) {
+    source_ = 0;
+    pull();
+  }
+  // Who asks later gets it from the master.
+  if (scene_ && package_ && now - std::max(served_at_, prepare_start_) > options_.timing.keep_package)
+    package_.reset();
   if (now - asked_ > options_.timing.ask_again) ask_again();
 }
 
@@ -140,6 +147,11 @@ void Worker::handle(const Message& message) {
     case Kind::kPiece:
       take_piece(unpack<Piece>(message.bytes));
       return;
+    case Kind::kPull:
+      served_.ask(message.from, unpack<Pull>(message.bytes));
+      served_at_ = seconds_now();
+      serve_pieces();
+      return;
     case Kind::kWork:
       take_work(unpack<Work>(message.bytes));
       return;
@@ -161,30 +173,46 @@ void Worker::take_plan(Plan plan) {
     return;
   }
   plan_ = std::move(plan);
-  pieces_ = (plan_->package_bytes + Piece::kBytes - 1) / Piece::kBytes;
-  package_.reserve(static_cast<std::size_t>(plan_->package_bytes));
+  pieces_ = pieces_of(plan_->package_bytes);
+  package_->reserve(static_cast<std::size_t>(plan_->package_bytes));
+  if (plan_->source > 0 && plan_->source < transport_.size() && plan_->source != transport_.rank())
+    source_ = plan_->source;
   pull();
 }
 
 void Worker::pull() {
   asked_pieces_ = std::min(piece_ + kWindow, pieces_);
-  asked_ = seconds_now();
-  tell(Pull{piece_, asked_pieces_ - piece_});
+  asked_ = piece_at_ = seconds_now();
+  const Pull pull{piece_, asked_pieces_ - piece_};
+  if (source_ == 0)
+    tell(pull);
+  else
+    transport_.send(source_, pack(pull));
+}
+
+void Worker::serve_pieces() {
+  if (package_) served_.serve(transport_, *package_, piece_);
 }
 
 void Worker::take_piece(Piece piece) {
   // One that was overtaken is asked for again by and by.
   if (piece.number != piece_ || piece_ >= pieces_) return;
-  package_ += piece.bytes;
+  if (piece.bytes.size() !=
+      std::min<std::uint64_t>(Piece::kBytes, plan_->package_bytes - piece_ * Piece::kBytes))
+    throw ArchiveError("a piece of a wrong length");
+  *package_ += piece.bytes;
   ++piece_;
-  if (piece_ < pieces_) {
-    if (piece_ == asked_pieces_) pull();
-    return;
-  }
+  piece_at_ = seconds_now();
+  if (piece_ < pieces_ && piece_ == asked_pieces_) pull();
+  if (served_.waits()) serve_pieces();
+  if (piece_ == pieces_) prepare();
+}
+
+void Worker::prepare() {
   prepare_start_ = seconds_now();
-  prepared_ = std::async(std::launch::async, [this] {
+  prepared_ = std::async(std::launch::async, [this, package = package_] {
     auto scene = std::make_unique<Scene>();
-    unpack_files(std::exchange(package_, {}), scene->provider);
+    unpack_files(*package, scene->provider);
     scene->options = parse_options(plan_->arguments, Program::kPafas);
     ParseResult parsed =
         parse_scene(scene->provider, scene->options.scene(), parsing_options(scene->options));

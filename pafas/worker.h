@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A slave: everything that a rank other than 0 does.
 //
-// The scene comes from the master as a package of files, so that no disk is shared. It is read and compiled
+// The scene comes as a package of files, so that no disk is shared, from the master or from a slave that
+// passes it on (relay.h), as this one does for others. It is read and compiled
 // in a thread of its own and rendered by others, while the main thread talks: a slave that works is never
 // silent. It asks for more blocks when the last of those it has is begun, and holds results back until then,
 // but no longer than some seconds.
@@ -15,6 +16,7 @@
 
 #include "pafas/message.h"
 #include "pafas/queue_feed.h"
+#include "pafas/relay.h"
 #include "pafas/timing.h"
 #include "pafas/transport.h"
 #include "rayshade/cli/options.h"
@@ -49,6 +51,8 @@ class Worker {
   void take_plan(Plan plan);
   void take_piece(Piece piece);
   void pull();
+  void prepare();
+  void serve_pieces();
   void ask_again();
   void take_work(Work work);
   void begin_frame(int frame);
@@ -69,8 +73,13 @@ class Worker {
   unsigned idle_polls_ = 0;
 
   std::optional<Plan> plan_;
-  std::string package_;
+  /// The package as far as it is here; null once nobody needs it any more.
+  std::shared_ptr<std::string> package_ = std::make_shared<std::string>();
   std::uint64_t piece_ = 0, pieces_ = 0, asked_pieces_ = 0;
+  int source_ = 0;       ///< the rank it is pulled from
+  double piece_at_ = 0;  ///< when it was last asked for, or sent, a piece
+  PieceServer served_;
+  double served_at_ = 0;  ///< when another slave last asked
   std::future<std::unique_ptr<Scene>> prepared_;
   std::unique_ptr<Scene> scene_;
   double prepare_start_ = 0;

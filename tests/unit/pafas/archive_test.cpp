@@ -36,11 +36,12 @@ TEST(ArchiveTest, MessagesComeBackAsTheyWere) {
   EXPECT_EQ(again.results[1].cpu_seconds, .25);
 
   Plan plan{
-      "no", {"-O", "a b.png", ""}, "hash", {rayshade::PixelStorage::kWord, {2.2, true}, {"depth.Z"}}, 77};
+      "no", {"-O", "a b.png", ""}, "hash", {rayshade::PixelStorage::kWord, {2.2, true}, {"depth.Z"}}, 77, 3};
   const auto plan_again = unpack<Plan>(pack(plan));
   EXPECT_EQ(plan_again.arguments, plan.arguments);
   EXPECT_EQ(plan_again.format, plan.format);
   EXPECT_EQ(plan_again.package_bytes, 77u);
+  EXPECT_EQ(plan_again.source, 3);
 
   RankReport report;
   report.host = "node1";

@@ -45,6 +45,7 @@ class ClusterTest : public ::testing::Test {
     // Includes are relative to the including file.
     timing_.alive = .05 * kSlowness;
     timing_.ask_again = .2 * kSlowness;
+    timing_.relay = .15 * kSlowness;
     timing_.hold = .05 * kSlowness;
     timing_.patience = 3 * kSlowness;
     timing_.silence = .5 * kSlowness;
@@ -87,6 +88,17 @@ class ClusterTest : public ::testing::Test {
     for (std::thread& slave : slaves) slave.join();
     other.join();
     return read_file(path("together.ppm"));
+  }
+  /// Makes the package of so many pieces at least, whatever zlib does.
+  void enlarge_scene(std::size_t pieces) {
+    std::mt19937_64 random(5);
+    std::string text = "/* ";
+    // Four bits of every character are random.
+    while (text.size() < 2 * pieces * Piece::kBytes + 1000) {
+      std::uint64_t bits = random();
+      for (int i = 0; i < 16; ++i, bits >>= 4) text += static_cast<char>('a' + bits % 16);
+    }
+    write_file(path("balls.inc"), read_file(path("balls.inc")) + text + " */\n");
   }
   nlohmann::json stats() const { return nlohmann::json::parse(read_file(path("stats.json"))); }
   virtual std::string version_of(int) const { return "1"; }
@@ -178,6 +190,40 @@ TEST_F(ClusterTest, AfterTheSceneIsSentTheMasterSaysLittle) {
   Network network(3);
   together(3, {}, network);
   EXPECT_LE(network.largest_from_master(), 4000u);
+}
+
+TEST_F(ClusterTest, ThePackageIsPassedOn) {
+  constexpr std::size_t kPieces = 40;
+  enlarge_scene(kPieces);
+  const std::string expected = alone({});
+  constexpr int kRanks = 20;
+  Network network(kRanks);
+  EXPECT_EQ(together(kRanks, {}, network), expected);
+  EXPECT_EQ(codes_, std::vector<int>(kRanks, kComplete));
+  std::size_t passed_on = 0;
+  for (int rank = 1; rank < kRanks; ++rank) passed_on += network.pieces_from(rank);
+  // Four of nineteen pull from the master, and who was too slow.
+  EXPECT_GE(network.pieces_from(0), 4 * kPieces);
+  EXPECT_LE(network.pieces_from(0), 10 * 2 * kPieces);
+  EXPECT_GE(passed_on, 5 * kPieces);
+}
+
+TEST_F(ClusterTest, TheDeadDoNotKeepThePackage) {
+  enlarge_scene(40);
+  const std::string expected = alone({});
+  constexpr int kRanks = 12;
+  std::mt19937 random(11);
+  for (int round = 0; round < 4; ++round) {
+    Network network(kRanks);
+    const auto after = std::chrono::microseconds(random() % (20'000U * kSlowness));
+    const std::string picture = together(kRanks, {"--block", "8"}, network, [&] {
+      std::this_thread::sleep_for(after);
+      for (int rank = 1; rank <= 6; ++rank) network.kill(rank);
+    });
+    EXPECT_EQ(picture, expected);
+    for (const int rank : {0, 7, 8, 9, 10, 11})
+      EXPECT_EQ(codes_[static_cast<std::size_t>(rank)], kComplete) << rank;
+  }
 }
 
 TEST_F(ClusterTest, ErrorsSendEverybodyHome) {

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "pafas/message.h"
 #include "pafas/transport.h"
 
 namespace pafas::test {
@@ -33,17 +34,24 @@ class Network {
   }
   std::size_t messages() const { return messages_; }
   std::size_t largest_from_master() const { return largest_from_master_; }
+  /// Pieces of the package that a rank has sent, lost ones included.
+  std::size_t pieces_from(int rank) {
+    const std::lock_guard lock(mutex_);
+    return boxes_[static_cast<std::size_t>(rank)].pieces_sent;
+  }
 
  private:
   friend class Loopback;
   struct Box {
     std::deque<Message> messages;
     bool dead = false;
+    std::size_t pieces_sent = 0;
   };
   void send(int from, int to, std::string bytes) {
     const std::lock_guard lock(mutex_);
     if (boxes_[static_cast<std::size_t>(from)].dead || boxes_[static_cast<std::size_t>(to)].dead) return;
     ++messages_;
+    if (kind_of(bytes) == Kind::kPiece) ++boxes_[static_cast<std::size_t>(from)].pieces_sent;
     if (from == 0) largest_from_master_ = std::max(largest_from_master_.load(), bytes.size());
     std::uniform_real_distribution<> draw(0, 1);
     if (draw(random_) < faults_.loss) return;
