@@ -56,15 +56,17 @@ void BlockRenderer::render_until_exact(const PixelRect& rect, BlockPixels& out) 
     Color prior;
   };
   std::vector<Open> open;
+  std::vector<SampleMoments> moments;
+  if (stops) moments = {rounds.sums.begin(), rounds.sums.end()};
   for (int y = rect.y0; stops && y < rect.y1; ++y) {
+    const int rows[3] = {std::max(y - 1, 0), y, std::min(y + 1, settings.height - 1)};
     for (int x = rect.x0; x < rect.x1; ++x) {
-      std::array<SampleSums, 9> around;
-      for (int i = 0; i < 9; ++i) {
-        const int near_x = std::clamp(x + i % 3 - 1, 0, settings.width - 1);
-        const int near_y = std::clamp(y + i / 3 - 1, 0, settings.height - 1);
-        around[static_cast<std::size_t>(i)] = rounds.sums[outer.index(near_x, near_y)];
-      }
-      open.push_back({outer.index(x, y), StopRule::prior(around)});
+      const int columns[3] = {std::max(x - 1, 0), x, std::min(x + 1, settings.width - 1)};
+      std::array<const SampleMoments*, 9> around;
+      std::size_t i = 0;
+      for (const int near_y : rows)
+        for (const int near_x : columns) around[i++] = &moments[outer.index(near_x, near_y)];
+      open.push_back({outer.index(x, y), StopRule::prior(around, rule.first())});
     }
   }
   for (int count = rule.first(); count < most && !open.empty();) {

@@ -25,21 +25,21 @@ int StopRule::next(int count) const {
   return most_ - twice < count ? most_ : twice;
 }
 
-Color StopRule::prior(std::span<const SampleSums, 9> around) {
-  Color sum, squares, ramp_x, ramp_y, within;
-  for (int i = 0; i < 9; ++i) {
-    const SampleSums& pixel = around[static_cast<std::size_t>(i)];
-    const Color mean = pixel.mean();
-    sum += mean;
-    squares += mean * mean;
-    ramp_x += static_cast<double>(i % 3 - 1) * mean;
-    ramp_y += static_cast<double>(i / 3 - 1) * mean;
-    within += pixel.scatter();
+Color StopRule::prior(const std::array<const SampleMoments*, 9>& around, int count) {
+  Color sum, squares, within;
+  for (const SampleMoments* pixel : around) {
+    sum += pixel->mean;
+    squares += pixel->square;
+    within += pixel->scatter;
   }
+  const auto line = [&](std::size_t a, std::size_t b, std::size_t c) {
+    return around[a]->mean + around[b]->mean + around[c]->mean;
+  };
+  const Color ramp_x = line(2, 5, 8) - line(0, 3, 6), ramp_y = line(6, 7, 8) - line(0, 1, 2);
   // Least squares over a 3 x 3 grid; the means of n samples count n times. Nine means less three parameters
   // leave six degrees of freedom, and each pixel's samples add n - 1.
   const Color between = squares - sum * sum * (1.0 / 9) - (ramp_x * ramp_x + ramp_y * ramp_y) * (1.0 / 6);
-  const int n = around[0].count;
+  const int n = count;
   const Color out = (between * static_cast<double>(n) + within) * (1.0 / (6 + 9 * (n - 1)));
   return {std::max(0.0, out.r), std::max(0.0, out.g), std::max(0.0, out.b)};
 }

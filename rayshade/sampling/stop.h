@@ -21,7 +21,7 @@
 // tile, window or crop gives the same bytes.
 #pragma once
 
-#include <span>
+#include <array>
 
 #include "rayshade/math/vec.h"
 
@@ -48,6 +48,13 @@ struct SampleSums {
   Color scatter() const { return squares - sum * sum * (1.0 / count); }
 };
 
+/// What a pixel's first samples tell its neighbours.
+struct SampleMoments {
+  Color mean, square, scatter;  ///< `square`: of the mean
+  explicit SampleMoments(const SampleSums& sums)
+      : mean(sums.mean()), square(mean * mean), scatter(sums.scatter()) {}
+};
+
 class StopRule {
  public:
   /// `tolerance`: of the standard error at nine samples, mean square over the channels; 0: no pixel stops
@@ -60,8 +67,8 @@ class StopRule {
   int next(int count) const;
 
   /// The variance of a single sample that the first samples of a pixel's surroundings suggest. `around`: the
-  /// 3 x 3 pixels, row by row, those beyond the screen replaced by the nearest on it; all of equal counts.
-  static Color prior(std::span<const SampleSums, 9> around);
+  /// 3 x 3 pixels, row by row, those beyond the screen replaced by the nearest on it; all of `count` samples.
+  static Color prior(const std::array<const SampleMoments*, 9>& around, int count);
 
   /// Whether the pixel stops.
   bool enough(const SampleSums& pixel, const Color& prior) const;

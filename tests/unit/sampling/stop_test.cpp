@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace rayshade {
 namespace {
@@ -20,12 +21,14 @@ SampleSums samples(std::initializer_list<double> values) {
 /// Pixels whose four samples are all `value(x, y)`.
 template <class Value>
 Color prior_of(const Value& value) {
-  std::array<SampleSums, 9> around;
+  std::vector<SampleMoments> moments;
   for (int i = 0; i < 9; ++i) {
     const double v = value(i % 3 - 1, i / 3 - 1);
-    around[static_cast<std::size_t>(i)] = samples({v, v, v, v});
+    moments.emplace_back(samples({v, v, v, v}));
   }
-  return StopRule::prior(around);
+  std::array<const SampleMoments*, 9> around;
+  for (std::size_t i = 0; i < 9; ++i) around[i] = &moments[i];
+  return StopRule::prior(around, 4);
 }
 
 TEST(StopRule, RoundsDoubleAndEndWithAllSamples) {
