@@ -307,11 +307,15 @@ class Report {
     EXPECT_GT(tally.hits, tally.rays / 10) << name;
     EXPECT_LT(tally.undecided, tally.rays / 2) << name;
     EXPECT_LE(d, limits.distance) << name;
-    EXPECT_LE(n, limits.normal) << name;
+    EXPECT_LE(np, limits.normal) << name;
+    EXPECT_LE(n, kRarely * limits.normal) << name;
   }
 
  private:
   static constexpr std::uint64_t kSeed = 31;
+  /// Normals are taken outward map by map, up to nine times, and every map rounds: among millions of hits are
+  /// some where most of that adds up.
+  static constexpr double kRarely = 3;
   Table table_;
   int shapes_;
 };
