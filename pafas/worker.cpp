@@ -107,7 +107,8 @@ void Worker::wait() {
       sleep_seconds(.01);
     return;
   }
-  const double pause = std::min(2e-4 * (1 + idle_polls_++ / 16), .005);
+  const unsigned turn = 1 + idle_polls_++ / 16;
+  const double pause = std::min(2e-4 * turn, .005);
   if (feed_)
     feed_->wait_for_news(pause);
   else
@@ -194,7 +195,7 @@ void Worker::serve_pieces() {
   if (package_) served_.serve(transport_, *package_, piece_);
 }
 
-void Worker::take_piece(Piece piece) {
+void Worker::take_piece(const Piece& piece) {
   // One that was overtaken is asked for again by and by.
   if (piece.number != piece_ || piece_ >= pieces_) return;
   if (piece.bytes.size() !=

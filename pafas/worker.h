@@ -49,7 +49,7 @@ class Worker {
   void tell(const M& message);
   void handle(const Message& message);
   void take_plan(Plan plan);
-  void take_piece(Piece piece);
+  void take_piece(const Piece& piece);
   void pull();
   void prepare();
   void serve_pieces();

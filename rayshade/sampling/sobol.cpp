@@ -126,8 +126,9 @@ std::array<double, 5> sobol5(std::uint64_t stream, std::uint64_t dimension, std:
   std::array<double, 5> out{sequence.first(), sequence.second()};
   std::uint64_t keys = mix64(sequence.keys);
   for (int i = 0; i < kFurther; ++i) {
-    out[static_cast<std::size_t>(2 + i)] =
-        fraction(permuted(further_reversed(i, sequence.place), static_cast<std::uint32_t>(keys)));
+    const std::uint32_t bits =
+        permuted(further_reversed(i, sequence.place), static_cast<std::uint32_t>(keys));
+    out.at(2 + static_cast<std::size_t>(i)) = fraction(bits);
     keys = i == 0 ? keys >> 32 : mix64(keys);
   }
   return out;
