@@ -39,7 +39,9 @@ TextureCoordinates Cone::texture_coordinates(const Vec3& x, const Vec3& /*facing
     return wall_.frame().outward({v.x * large_radius_, v.y * large_radius_, v.z * height});
   };
   TextureCoordinates out;
-  if (!(canonical.z < kEpsilon)) out.u = turns(canonical.x / canonical.z, canonical.y < 0);
+  if (!(canonical.z < kEpsilon)) {
+    out.u = turns(canonical.x / canonical.z, canonical.y / canonical.z, canonical.y < 0);
+  }
   out.v = p.z / wall_.length();
   out.du = normalize(outward(outward({-canonical.y, canonical.x, 0})));
   out.dv = normalize(canonical);

@@ -10,7 +10,7 @@ TextureCoordinates Cylinder::texture_coordinates(const Vec3& x, const Vec3& /*fa
                                                  const ShapeHit& /*hit*/) const {
   const Vec3 p = wall_.local(x);
   TextureCoordinates out;
-  out.u = turns(p.x / radius_, p.y < 0);
+  out.u = turns(p.x / radius_, p.y / radius_, p.y < 0);
   out.v = p.z / wall_.length();
   out.du = normalize(wall_.frame().outward({-p.y, p.x, 0}));
   out.dv = wall_.frame().rows[2];

@@ -21,7 +21,7 @@ TextureCoordinates Disc::texture_coordinates(const Vec3& x, const Vec3& facing_n
   const double distance = std::sqrt(square);
   const double cosine = x.x / distance;
   TextureCoordinates out;
-  out.u = std::fabs(cosine) > 1 ? 0.5 : turns(cosine, x.y < 0);
+  out.u = std::fabs(cosine) > 1 ? 0.5 : turns(cosine, x.y / distance, x.y < 0);
   out.v = distance / radius_;
   out.dv = from_center;
   out.du = cross(out.dv, facing_normal);

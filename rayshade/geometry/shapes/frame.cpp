@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "rayshade/geometry/shapes/frame.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "rayshade/math/functions.h"
 
 namespace rayshade {
@@ -19,10 +22,12 @@ AxisFrame axis_frame(const Vec3& axis) {
   return {{{1 - a * (a * inverse), xy, -a}, {xy, 1 - b * (b * inverse), -b}, w}};
 }
 
-double turns_of_cosine(double c) {
-  if (c > 1) return 0;
-  if (c < -1) return 0.5;
-  return fn::acos(c) / (2 * fn::kPi);
+double turns(double c, double s, bool mirrored) {
+  constexpr double kOnSurface = 1e-9;
+  const double angle = std::fabs(c * c + s * s - 1) < kOnSurface ? fn::atan2(std::fabs(s), c)
+                                                                 : fn::acos(std::clamp(c, -1.0, 1.0));
+  const double out = angle / (2 * fn::kPi);
+  return mirrored ? 1 - out : out;
 }
 
 }  // namespace rayshade

@@ -21,11 +21,10 @@ struct AxisFrame {
 /// y and z, which fixes where u begins there.
 AxisFrame axis_frame(const Vec3& axis);
 
-/// acos(c) in turns, 0 to 0.5, where c is clamped to [-1, 1].
-double turns_of_cosine(double c);
-/// The angle in turns of a point with cosine `c`; `mirrored` on the side where it counts downward from 1.
-inline double turns(double c, bool mirrored) {
-  return mirrored ? 1 - turns_of_cosine(c) : turns_of_cosine(c);
-}
+/// The angle in turns of a point with cosine `c` and sine `s`; `mirrored` on the side where it counts
+/// downward from 1. The original knows the cosine alone, clamped to [-1, 1], and that is what counts for
+/// points off the surface, where textures of their own transforms ask. On it, where the squares add up to 1,
+/// the sine has the digits that the cosine loses as it nears 1 - all but half of them.
+double turns(double c, double s, bool mirrored);
 
 }  // namespace rayshade

@@ -35,10 +35,11 @@ bool holds(int a, int b, int c) {
   return (a >= 0 && b >= 0 && c >= 0 && a + b + c > 0) || (a <= 0 && b <= 0 && c <= 0 && a + b + c < 0);
 }
 
+/// Of the sign that `d < 0` tells, so that -0 counts as forward here as in the descent.
 double inverse_component(double d) {
   constexpr double kHuge = 1e290;
   const double inverse = 1 / d;
-  return std::fabs(inverse) <= kHuge ? inverse : std::copysign(kHuge, d);
+  return std::fabs(inverse) <= kHuge ? inverse : d < 0 ? -kHuge : kHuge;
 }
 
 }  // namespace

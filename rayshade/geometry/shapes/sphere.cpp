@@ -58,11 +58,11 @@ TextureCoordinates Sphere::texture_coordinates(const Vec3& x, const Vec3& /*faci
                                                const ShapeHit& /*hit*/) const {
   const Vec3 e = normalize(x - center_);
   TextureCoordinates out;
-  // e may exceed unit length by a rounding.
-  const double phi = fn::acos(std::clamp(-e.z, -1.0, 1.0));
-  out.v = phi / fn::kPi;
+  // By tangents: cosines lose half of their digits near 1.
+  const double across = std::sqrt(e.x * e.x + e.y * e.y);
+  out.v = fn::atan2(across, -e.z) / fn::kPi;
   if (!(std::fabs(out.v) < kEpsilon || std::fabs(out.v - 1) < kEpsilon)) {
-    out.u = turns(e.x / fn::sin(phi), !(e.y > 0));
+    out.u = turns(e.x / across, e.y / across, !(e.y > 0));
   }
   out.du = normalize({-e.y, e.x, 0});
   out.dv = normalize(cross(e, out.du));

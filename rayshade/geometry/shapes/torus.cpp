@@ -206,8 +206,8 @@ TextureCoordinates Torus::texture_coordinates(const Vec3& x, const Vec3& facing_
   const Vec3 p = frame_.local(x - center_);
   const double h = std::sqrt(p.x * p.x + p.y * p.y);
   TextureCoordinates out;
-  if (h > 0) out.u = turns(p.x / h, p.y < 0);
-  out.v = turns(-(h - swept_) / tube_, p.z > 0);
+  if (h > 0) out.u = turns(p.x / h, p.y / h, p.y < 0);
+  out.v = turns(-(h - swept_) / tube_, p.z / tube_, p.z > 0);
   // The frame turns both tangents outward; the second is outside already (objects.md G18).
   out.du = normalize(frame_.outward({-p.y, p.x, 0}));
   out.dv = normalize(frame_.outward(cross(facing_normal, out.du)));

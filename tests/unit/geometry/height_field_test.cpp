@@ -439,6 +439,34 @@ TEST(HeightField, RefusesWhatItCannotHold) {
   EXPECT_THROW(HeightField(std::make_shared<HeightFieldData>(HeightFieldData{50000, {}})), std::length_error);
 }
 
+// A component of -0 is not a way to go: cells were taken in the order of the one sign and left in that of the
+// other.
+TEST(HeightField, ZerosOfEitherSignGoTheSameWay) {
+  Random random(311);
+  const HeightField field(random_data(9, 0.3, 0, random));
+  int hits = 0;
+  for (int i = 0; i < 200; ++i) {
+    const int axis = random.below(3);
+    Vec3 origin{random.between(0.01, 0.99), random.between(0.01, 0.99), random.between(0, 0.2)}, direction;
+    const double way = random.below(2) ? 1 : -1;
+    origin[axis] -= 5 * way;
+    direction[axis] = way;
+    ShapeHit expected;
+    const bool found = field.intersect({origin, direction}, 0, kFar, expected);
+    EXPECT_TRUE(found || axis != 2);
+    hits += found;
+    for (int signs = 1; signs < 4; ++signs) {
+      Vec3 other = direction;
+      if (signs & 1) other[(axis + 1) % 3] = -0.0;
+      if (signs & 2) other[(axis + 2) % 3] = -0.0;
+      ShapeHit hit;
+      ASSERT_EQ(field.intersect({origin, other}, 0, kFar, hit), found) << i << " " << signs;
+      ASSERT_EQ(hit.t, expected.t);
+    }
+  }
+  EXPECT_GT(hits, 100);
+}
+
 TEST(HeightField, StrangeRaysMiss) {
   const HeightField field(make_data(5, [](double x, double) { return x; }));
   const double nan = std::numeric_limits<double>::quiet_NaN();

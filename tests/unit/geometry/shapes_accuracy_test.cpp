@@ -192,9 +192,10 @@ void compare(const Shape& shape, const Reference& reference, const Placed& place
     ASSERT_GE(hit.t, lo) << tell();
     const double s = sizes(hit.t);
     const V p = line.at(hit.t);
-    tally.residual = std::max(tally.residual, static_cast<double>(reference.distance(p)) / (kRoundoff * s));
+    tally.residual =
+        std::max(tally.residual, std::fabs(static_cast<double>(reference.height(p))) / (kRoundoff * s));
     const SurfacePoint surface = shape.surface_point(ray, hit);
-    const double off = static_cast<double>(reference.distance(surface.point));
+    const double off = std::fabs(static_cast<double>(reference.height(surface.point)));
     ASSERT_LE(off, surface.error) << tell();
     tally.of_bound = std::max(tally.of_bound, surface.error > 0 ? off / surface.error : 0);
   }

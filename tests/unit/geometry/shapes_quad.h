@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The primitives once more, in 113 bits and from other equations than the product's (rule 16): every place
-// where the line of a ray meets the surface, with how safely it lies within the shape's extent, the distance
-// of any point from the surface, and the normal. No frames, no canonical spaces, no stable forms: the
+// where the line of a ray meets the surface, with how safely it lies within the shape's extent, the height of
+// any point over the surface, and the normal. No frames, no canonical spaces, no stable forms: the
 // precision pays for plain algebra.
 #pragma once
 
@@ -49,6 +49,13 @@ struct Crossing {
   Q cosine;          ///< |n.d| / |d|
   Q curvature = -1;  ///< radius of curvature in the direction of the line; negative for flat ones
   Q turning = -1;    ///< smallest radius of curvature
+  Q softness = 0;    ///< a size that takes part as well: what the surface's own equation rounds
+};
+
+/// Surface coordinates, and how far one goes on the surface for a unit of each; 0: not defined there.
+struct Coordinates {
+  Q u, v, along_u, along_v;
+  bool cyclic_u = false, cyclic_v = false;
 };
 
 struct Crossings {
@@ -85,10 +92,10 @@ class Sphere {
     }
     return out;
   }
-  Q distance(const V& p) const { return abs(length(p - c_) - r_); }
+  Q height(const V& p) const { return length(p - c_) - r_; }
   V normal(const V& p) const { return unit(p - c_); }
 
- private:
+ protected:
   V c_;
   Q r_;
 };
@@ -138,10 +145,10 @@ class Wall {
     }
     return out;
   }
-  Q distance(const V& p) const {
+  Q height(const V& p) const {
     const Q s = dot(p - e_, m_) / dot(m_, m_);
     const Q tilt = (r1_ - r0_) / length(m_);
-    return abs(length(cross(m_, p - e_)) / length(m_) - abs(radius(s))) / sqrt(1 + tilt * tilt);
+    return (length(cross(m_, p - e_)) / length(m_) - abs(radius(s))) / sqrt(1 + tilt * tilt);
   }
   V normal(const V& p) const {  // from the axis to p, tilted
     const Q s = dot(p - e_, m_) / dot(m_, m_);
@@ -149,7 +156,7 @@ class Wall {
     return sign * unit(radial(p) - sign * ((r1_ - r0_) / dot(m_, m_)) * m_);
   }
 
- private:
+ protected:
   V radial(const V& p) const { return unit(p - e_ - (dot(p - e_, m_) / dot(m_, m_)) * m_); }
   Q radius(const Q& s) const { return r0_ + s * (r1_ - r0_); }
   Q f(const V& p) const {
@@ -173,7 +180,7 @@ class Flat {
     out.all.push_back({dot(n_, on_ - line.o) / dot(n_, line.d), 1e300, cosine, -1, -1});
     return out;
   }
-  Q distance(const V& p) const { return abs(dot(n_, p - on_)); }
+  Q height(const V& p) const { return dot(n_, p - on_); }
   V normal(const V&) const { return n_; }
 
  protected:
@@ -194,7 +201,7 @@ class Disc : public Flat {
     return out;
   }
 
- private:
+ protected:
   Q r_;
 };
 
@@ -228,7 +235,7 @@ class Polygon : public Flat {
     return out;
   }
 
- private:
+ protected:
   static V fan(const std::vector<Vec3>& points) {
     V sum(0, 0, 0);
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
@@ -266,13 +273,12 @@ class Box {
     std::sort(out.all.begin(), out.all.end(), [](const Crossing& a, const Crossing& b) { return a.t < b.t; });
     return out;
   }
-  Q distance(const V& p) const {
-    Q nearest = 1e300;
-    for (int axis = 0; axis < 3; ++axis) {
-      keep_nearest(nearest, abs(p[axis] - lo_[axis]));
-      keep_nearest(nearest, abs(p[axis] - hi_[axis]));
-    }
-    return nearest;
+  /// Beside a face.
+  Q height(const V& p) const {
+    Q most = -1e300;
+    for (int axis = 0; axis < 3; ++axis)
+      most = std::max(most, std::max(Q(lo_[axis] - p[axis]), Q(p[axis] - hi_[axis])));
+    return most;
   }
   V normal(const V& p) const {
     Q nearest = 1e300;
