@@ -110,7 +110,7 @@ struct WalkKernel {
   const char* name;
 };
 const WalkKernel& walk_kernel();
-/// Those for the target that Highway has chosen at present, so that tests can go through all of them.
+/// Those for the target that calls go to at present (dispatch.h), so that tests can go through all of them.
 WalkKernel dispatched_walk_kernel();
 const WalkKernel& scalar_walk_kernel();
 

@@ -2,12 +2,15 @@
 #include <algorithm>
 #include <bit>
 
+#include "fas/compiled_targets.h"
 #include "fas/hierarchy.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "fas/hierarchy_walk.cpp"  // NOLINT: Highway includes this file once per target
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "fas/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fas::HWY_NAMESPACE {
@@ -121,10 +124,6 @@ HWY_AFTER_NAMESPACE();
 namespace fas {
 namespace {
 
-HWY_EXPORT(next);
-HWY_EXPORT(start);
-HWY_EXPORT(walk_name);
-
 /// Which children are met, and where they begin.
 std::uint32_t scalar_test(const Hierarchy::Node& node, const BoxProbe& probe, float far, float* nears) {
   std::uint32_t met = 0;
@@ -179,14 +178,11 @@ std::uint32_t scalar_next(const Hierarchy::Node* nodes, const BoxProbe& probe, f
 }  // namespace
 
 WalkKernel dispatched_walk_kernel() {
-  return {&HWY_DYNAMIC_DISPATCH(next), &HWY_DYNAMIC_DISPATCH(start), HWY_DYNAMIC_DISPATCH(walk_name)()};
+  return {FAS_VERSIONS(next).best(), FAS_VERSIONS(start).best(), FAS_VERSIONS(walk_name).best()()};
 }
 
 const WalkKernel& walk_kernel() {
-  static const WalkKernel chosen = [] {
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    return dispatched_walk_kernel();
-  }();
+  static const WalkKernel chosen = dispatched_walk_kernel();
   return chosen;
 }
 

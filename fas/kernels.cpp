@@ -3,10 +3,14 @@
 
 #include <cstring>
 
+#include "fas/compiled_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "fas/kernels.cpp"  // NOLINT: Highway includes this file once per target
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "fas/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fas::HWY_NAMESPACE {
@@ -117,10 +121,6 @@ HWY_AFTER_NAMESPACE();
 namespace fas {
 namespace {
 
-HWY_EXPORT(match);
-HWY_EXPORT(match_rays);
-HWY_EXPORT(name);
-
 std::uint64_t scalar_match(const std::uint8_t* block, int n, bool cuts, Probe probe) {
   const std::size_t s = Block::stride(static_cast<std::size_t>(n));
   const auto* ab = reinterpret_cast<const std::int8_t*>(block + Block::kAreaBytes * s);
@@ -161,14 +161,11 @@ std::uint64_t scalar_match_rays(const std::uint8_t* block, std::size_t s, std::s
 }  // namespace
 
 Kernels dispatched_kernels() {
-  return {&HWY_DYNAMIC_DISPATCH(match), &HWY_DYNAMIC_DISPATCH(match_rays), HWY_DYNAMIC_DISPATCH(name)()};
+  return {FAS_VERSIONS(match).best(), FAS_VERSIONS(match_rays).best(), FAS_VERSIONS(name).best()()};
 }
 
 const Kernels& kernels() {
-  static const Kernels chosen = [] {
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    return dispatched_kernels();
-  }();
+  static const Kernels chosen = dispatched_kernels();
   return chosen;
 }
 

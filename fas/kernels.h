@@ -52,7 +52,7 @@ struct Kernels {
 
 /// Those for this processor.
 const Kernels& kernels();
-/// Those for the target that Highway has chosen at present, so that tests can go through all of them.
+/// Those for the target that calls go to at present (dispatch.h), so that tests can go through all of them.
 Kernels dispatched_kernels();
 /// Plain C++, the twin that the others are tested against.
 const Kernels& scalar_kernels();

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "fas/compiled_targets.h"
 #include "rayshade/geometry/rank.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -10,6 +11,8 @@
   "rayshade/geometry/ray_pack.cpp"  // NOLINT: Highway includes this file once per target
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "fas/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rayshade::HWY_NAMESPACE {
@@ -502,22 +505,24 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace rayshade {
 
-HWY_EXPORT(improve);
-HWY_EXPORT(occlude);
-HWY_EXPORT(clip);
+namespace {
+constexpr auto kImprove = FAS_VERSIONS(improve);
+constexpr auto kOcclude = FAS_VERSIONS(occlude);
+constexpr auto kClip = FAS_VERSIONS(clip);
+}  // namespace
 
 RayPack::Mask improve_pack(const CompiledScene& scene, const Leaf& leaf, std::int64_t rank, RayPack& pack,
                            RayPack::Mask mask) {
-  return HWY_DYNAMIC_DISPATCH(improve)(scene, leaf, rank, pack, mask);
+  return kImprove.best()(scene, leaf, rank, pack, mask);
 }
 
 RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack,
                            RayPack::Mask mask) {
-  return HWY_DYNAMIC_DISPATCH(occlude)(scene, leaf, pack, mask);
+  return kOcclude.best()(scene, leaf, pack, mask);
 }
 
 RayPack::Mask clip_pack(const Bounds3& box, double condition, const RayPack& pack, RayPack::Mask mask) {
-  return HWY_DYNAMIC_DISPATCH(clip)(box, condition, pack, mask);
+  return kClip.best()(box, condition, pack, mask);
 }
 
 }  // namespace rayshade

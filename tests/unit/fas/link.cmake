@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-target_link_libraries(fas_test PRIVATE rayshade_flags PkgConfig::HWY Threads::Threads)
+target_link_libraries(fas_test PRIVATE rayshade_flags Threads::Threads)

@@ -3,26 +3,20 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
-#include <hwy/targets.h>
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "fas/dispatch.h"
+
 namespace fas::test {
 
-/// While such a test runs, Highway dispatches to the target that is the parameter.
+/// While such a test runs, calls go to the target that is the parameter.
 class TargetTest : public testing::TestWithParam<std::int64_t> {
  protected:
-  void SetUp() override {
-    hwy::SetSupportedTargetsForTest(GetParam());
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-  void TearDown() override {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
+  void SetUp() override { pretend_targets(GetParam()); }
+  void TearDown() override { pretend_targets(0); }
 };
 
 inline std::string target_name(const testing::TestParamInfo<std::int64_t>& info) {
@@ -31,8 +25,7 @@ inline std::string target_name(const testing::TestParamInfo<std::int64_t>& info)
 
 inline std::vector<std::int64_t> targets() {
   std::vector<std::int64_t> out;
-  for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1)
-    out.push_back(left & -left);
+  for (std::int64_t left = supported_targets(); left != 0; left &= left - 1) out.push_back(left & -left);
   return out;
 }
 

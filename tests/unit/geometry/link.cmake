@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-target_link_libraries(geometry_test PRIVATE rayshade_lang PkgConfig::HWY)
+target_link_libraries(geometry_test PRIVATE rayshade_lang)
