@@ -14,8 +14,10 @@ constexpr double kSafety = 4;
 
 }  // namespace
 
-RayStarts::RayStarts(const WorldHit& hit, double leaf_extent)
-    : point(hit.point), normal(hit.geometric_normal), extent(std::min(1.0, leaf_extent)) {
+void RayStarts::leave(const WorldHit& hit, double leaf_extent) {
+  point = hit.point;
+  normal = hit.geometric_normal;
+  extent = std::min(1.0, leaf_extent);
   constexpr double kUnit = std::numeric_limits<double>::epsilon();
   const double coordinates = max_abs(hit.point);
   step = kSafety * std::max(hit.error, 2 * kUnit * coordinates);

@@ -89,7 +89,8 @@ struct RayStarts {
   double rounding = 0;  ///< least lower limit, for directions of unit length
   double extent = 0;    ///< at most 1
   RayStarts() = default;
-  RayStarts(const WorldHit& hit, double extent);
+  RayStarts(const WorldHit& hit, double leaf_extent) { leave(hit, leaf_extent); }
+  void leave(const WorldHit& hit, double leaf_extent);
   /// `length_of_direction`: 1 where it is known to be one to within rounding.
   RayStart toward(const Vec3& direction, double length_of_direction, bool shadow) const {
     const double off = dot(direction, normal) < 0 ? -step : step;

@@ -13,6 +13,7 @@ Vec3 add_scaled(const Vec3& a, double s, const Vec3& b);
 
 /// (a + s b) + t c, each sum rounded once, over its length, whose sum of squares is fused from x to z.
 /// Vectors whose squared length would under- or overflow are normalised with care instead.
-Vec3 unit_of_sum(const Vec3& a, double s, const Vec3& b, double t, const Vec3& c);
+/// The result is made where it stays: read back from a copy, it would be waited for.
+void unit_of_sum(const Vec3& a, double s, const Vec3& b, double t, const Vec3& c, Vec3& out);
 
 }  // namespace rayshade::fused

@@ -15,7 +15,7 @@ void BlockRenderer::take_samples(Rounds& rounds, std::size_t pixel, int from, in
   const int x = rounds.outer.x0 + static_cast<int>(pixel % width);
   const int y = rounds.outer.y0 + static_cast<int>(pixel / width);
   for (int k = from; k < to; ++k) {
-    samples_.push_back(eye_sample(x, y, k));
+    take_sample(x, y, k);
     rounds.owners.push_back(pixel);
     if (samples_.size() >= kSamplesTogether) trace_round(rounds);
   }

@@ -27,9 +27,11 @@ int BlockRenderer::chosen_sample(int x, int y) const {
   return ((x % side + side * (y % side)) * factor + shift) % count;
 }
 
-EyeSample BlockRenderer::eye_sample(int x, int y, int k) const {
+/// Adds sample `k` of a pixel to those to be traced. It is made where it stays: copies of fresh records stall
+/// on their own stores.
+void BlockRenderer::take_sample(int x, int y, int k) {
   const RenderSettings& settings = *frame_.shading.settings;
-  EyeSample out;
+  EyeSample& out = samples_.emplace_back();
   out.x = static_cast<std::uint32_t>(x);
   out.y = static_cast<std::uint32_t>(y);
   out.sample = static_cast<std::uint32_t>(k);
@@ -43,10 +45,9 @@ EyeSample BlockRenderer::eye_sample(int x, int y, int k) const {
   if (frame_.camera->has_lens()) {
     out.ray = frame_.camera->lens_ray(u, v, out.sample_number, chosen.lens[0], chosen.lens[1]);
   } else {
-    out.ray = frame_.camera->ray(u, v);
+    frame_.camera->ray(u, v, out.ray);
   }
   out.ray.time = frame_.camera->time(frame_.shading.frame, out.sample_number, chosen.moment);
-  return out;
 }
 
 void BlockRenderer::trace_range(std::size_t first, std::size_t count) {
@@ -94,7 +95,7 @@ void BlockRenderer::add_cost(const SampleResult& result, const SampleCost* cost,
 void BlockRenderer::render_single(const PixelRect& rect) {
   samples_.clear();
   for (int y = rect.y0; y < rect.y1; ++y) {
-    for (int x = rect.x0; x < rect.x1; ++x) samples_.push_back(eye_sample(x, y, chosen_sample(x, y)));
+    for (int x = rect.x0; x < rect.x1; ++x) take_sample(x, y, chosen_sample(x, y));
   }
   trace_samples();
 }
@@ -117,10 +118,9 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
   const bool refine = frame_.grid->count() > 1;
   const PixelRect outer = refine ? halo(rect, kRefinementReach, settings.width, settings.height) : rect;
   render_single(outer);
-  const std::vector<SampleResult> single(std::move(results_));
-  const std::vector<SampleCost> single_cost(std::move(costs_));
-  results_ = {};
-  costs_ = {};
+  std::swap(results_, single_);  // not moved: the next block finds its memory here
+  std::swap(costs_, single_costs_);
+  const std::vector<SampleResult>& single = single_;
   counts_.halo_samples += single.size() - pixels;
   const auto outer_index = [&](int x, int y) {
     return static_cast<std::size_t>(y - outer.y0) * outer.width() + (x - outer.x0);
@@ -142,7 +142,7 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
         BlockPixels::Layer& layer = out.layers[index];
         note_layer(one, layer);
         layer.samples = 1;
-        add_cost(one, frame_.cost ? &single_cost[i] : nullptr, layer);
+        add_cost(one, frame_.cost ? &single_costs_[i] : nullptr, layer);
       }
     }
   }
@@ -196,7 +196,7 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
     const int y = rect.y0 + static_cast<int>(p / static_cast<std::size_t>(rect.width()));
     const int reused = chosen_sample(x, y);
     for (int k = 0; k < count; ++k) {
-      if (k != reused) samples_.push_back(eye_sample(x, y, k));
+      if (k != reused) take_sample(x, y, k);
     }
     if (samples_.size() >= kSamplesTogether) flush();
   }
@@ -206,7 +206,7 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
 void BlockRenderer::observe(int x, int y, TreeObserver& observer) {
   tree_.set_observer(&observer);
   samples_.clear();
-  samples_.push_back(eye_sample(x, y, chosen_sample(x, y)));
+  take_sample(x, y, chosen_sample(x, y));
   trace_samples();
   tree_.set_observer(nullptr);
 }

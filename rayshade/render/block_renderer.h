@@ -69,7 +69,7 @@ class BlockRenderer {
   const SamplingCounts& counts() const { return counts_; }
 
  private:
-  EyeSample eye_sample(int x, int y, int k) const;
+  void take_sample(int x, int y, int k);
   int chosen_sample(int x, int y) const;
   void trace_range(std::size_t first, std::size_t count);
   void trace_samples();
@@ -89,13 +89,13 @@ class BlockRenderer {
   RayTree tree_;
   SamplingCounts counts_;
   std::vector<EyeSample> samples_;
-  std::vector<SampleResult> results_;
+  std::vector<SampleResult> results_, single_;
   /// Of one sample, beside what SampleResult counts.
   struct SampleCost {
     float microseconds = 0, rays = 0, tree_rays = 0;
   };
   static void add_cost(const SampleResult& result, const SampleCost* cost, BlockPixels::Layer& layer);
-  std::vector<SampleCost> costs_;  ///< per sample, when costs are wanted
+  std::vector<SampleCost> costs_, single_costs_;  ///< per sample, when costs are wanted
 };
 
 }  // namespace rayshade

@@ -19,7 +19,19 @@ class Camera {
 
   /// The ray through the screen point (u, v), in pixels from the upper left corner of the field of view: from
   /// the eye, of unit length, time not set.
-  Ray ray(double u, double v) const { return {eye_, direction(u, v)}; }
+  Ray ray(double u, double v) const {
+    Ray out;
+    ray(u, v, out);
+    return out;
+  }
+  /// The same, made in place; the time is left as it is.
+  void ray(double u, double v, Ray& out) const {
+    out.origin = eye_;
+    // In fused arithmetic, as the reference pictures were made: where a texture changes at a plane of the
+    // scene, the pattern of rounding shows (textures.md D20).
+    fused::unit_of_sum(corner_, u, step_x_, v, step_y_, out.direction);
+    out.unit = true;
+  }
 
   /// True where eye rays start on a lens instead of at a point.
   bool has_lens() const { return aperture_ > 0; }
@@ -31,7 +43,7 @@ class Camera {
     const double p = -1 + (column + xi) * 2 / side_;
     const double q = -1 + (row + zeta) * 2 / side_;
     const Vec3 shift = aperture_ * (p * right_ + q * up_);
-    return {eye_ + shift, normalize(focal_distance_ * direction(u, v) - shift)};
+    return {eye_ + shift, normalize(focal_distance_ * ray(u, v).direction - shift)};
   }
 
   /// Where the rays of the lens start.
@@ -60,10 +72,6 @@ class Camera {
   std::array<double, 2> project(const Vec3& point) const;
 
  private:
-  // In fused arithmetic, as the reference pictures were made: where a texture changes at a plane of the
-  // scene, the pattern of rounding shows (textures.md D20).
-  Vec3 direction(double u, double v) const { return fused::unit_of_sum(corner_, u, step_x_, v, step_y_); }
-
   Vec3 eye_, view_;  // view_: eye to look point
   Vec3 corner_;      // eye to the screen point (0, 0)
   Vec3 forward_, right_, up_;

@@ -3,6 +3,7 @@
 #include "rayshade/shading/ray_tree.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "rayshade/math/functions.h"
 #include "rayshade/sampling/sample_numbers.h"
@@ -77,7 +78,7 @@ void RayTree::start_batch(std::size_t first, std::size_t count, std::span<const 
   const bool misses_are_background = scene_.settings->effects.empty() && !observer_;
   for (std::size_t i = 0; i < count; ++i) {
     SampleResult& result = results[first + i];
-    result = SampleResult{};
+    std::construct_at(&result);  // in place
     const NearestAnswer& answer = nearest_answers_[i];
     if (!answer.found && misses_are_background) {
       result.color = scene_.settings->background;
@@ -191,7 +192,7 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
     shade.surface = &evaluate_hit(*scene_.compiled, *scene_.textures, answer.hit, node.ray, context, scratch_,
                                   shade.world, shade.textured);
     const WorldHit& world = shade.world;
-    shade.starts = RayStarts(world, world_extent(*scene_.compiled, answer.hit));
+    shade.starts.leave(world, world_extent(*scene_.compiled, answer.hit));
     shade.k = -dot(node.ray.direction, world.normal);
     shade.mirror = node.ray.direction + (2 * shade.k) * world.normal;
     node.distance = answer.hit.t();

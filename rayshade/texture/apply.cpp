@@ -2,6 +2,8 @@
 // The walk outward (textures.md 1.2), and each texture put to work on the record of one hit.
 #include "rayshade/texture/apply.h"
 
+#include <optional>
+
 #include "rayshade/math/fused.h"
 #include "rayshade/texture/image_texture.h"
 #include "rayshade/texture/noise.h"
@@ -25,24 +27,23 @@ struct Evaluation {
   AffinePair frame;    ///< primitive space -> that space; kept up to date only where `framed`
   bool framed = false;
   unsigned gloss_count = 0;
-  Surface surface;
+  Surface& surface;
 };
 
 /// The transform of a texture at this moment, and the point in its space.
 struct TextureSpace {
   const AffinePair* map = nullptr;  ///< null: the identity
-  AffinePair moving;
+  std::optional<AffinePair> moving;
   Vec3 q;
 
   TextureSpace(const CompiledTexture& texture, const Evaluation& e) : q(e.point) {
     if (!texture.transformed) return;
     map = &texture.transform;
     if (texture.animated) {
-      moving.forward = texture.source->transform.at(e.moment);
-      const auto inverted = inverse(moving.forward);
+      const Affine forward = texture.source->transform.at(e.moment);
+      const auto inverted = inverse(forward);
       if (!inverted) throw MotionError("Singular matrix.", texture.source->location, e.moment.time);
-      moving.inverse = *inverted;
-      map = &moving;
+      map = &moving.emplace(AffinePair{forward, *inverted});
     }
     q = map->inverse.point(e.point);
   }
@@ -271,8 +272,10 @@ const Surface& evaluate_textured_hit(const CompiledScene& scene, const CompiledT
     return surface_of(scene, hit);
   }
   const LocalHit local = resolve_local(scene, hit, world_ray, scratch);
-  Evaluation e{scene,        hit, local, sample, {world_ray.time, scene.frame}, textured_point(local),
-               local.normal, {},  false, 0,      surface_of(scene, hit)};
+  textured = surface_of(scene, hit);
+  Evaluation e{
+      scene, hit,   local, sample,  {world_ray.time, scene.frame}, textured_point(local), local.normal,
+      {},    false, 0,     textured};
   Vec3 geometric = local.geometric_normal;
   Vec3 exact = local.point;
   double error = local.error;
@@ -292,8 +295,12 @@ const Surface& evaluate_textured_hit(const CompiledScene& scene, const CompiledT
     for (const CompiledTexture& texture : textures.list(level.texture_list).textures)
       apply_texture(texture, e);
   }
-  world = {exact, e.normal, geometric, error, local.smooth, local.entering};
-  textured = e.surface;
+  world.point = exact;
+  world.normal = e.normal;
+  world.geometric_normal = geometric;
+  world.error = error;
+  world.smooth = local.smooth;
+  world.entering = local.entering;
   return textured;
 }
 
@@ -313,8 +320,10 @@ Transmittance evaluate_transmittance(const CompiledScene& scene, const CompiledT
   if (needs.levels == 0) return result(surface_of(scene, hit));
   // Nothing that changes transmission reads the shading normal, so it is not carried outward.
   const SampleContext sample;
-  Evaluation e{scene,        hit, local, sample, {world_ray.time, scene.frame}, textured_point(local),
-               local.normal, {},  false, 0,      surface_of(scene, hit)};
+  Surface textured = surface_of(scene, hit);
+  Evaluation e{
+      scene, hit,   local, sample,  {world_ray.time, scene.frame}, textured_point(local), local.normal,
+      {},    false, 0,     textured};
   PathWalk walk(scene, hit, world_ray.time, scratch);
   PathLevel level;
   for (unsigned i = 0; i < needs.levels && walk.next(level); ++i) {
@@ -327,7 +336,7 @@ Transmittance evaluate_transmittance(const CompiledScene& scene, const CompiledT
       if (texture.changes_transmission) apply_texture(texture, e);
     }
   }
-  return result(e.surface);
+  return result(textured);
 }
 
 }  // namespace rayshade
