@@ -106,20 +106,23 @@ class Trial {
       return;
     }
     const bool wrong = answer.found != (expected != nullptr);
+    const auto describe = [&] {
+      return format("origin %a %a %a direction %a %a %a lo %a, found %.17g instead of %.17g", ray.origin.x,
+                    ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z, lo,
+                    answer.found ? answer.hit.t() : -1, expected ? static_cast<double>(expected->t) : -1);
+    };
     if (wrong && reported_++ < 3) {
-      ADD_FAILURE() << (answer.found ? "false hit" : "missed hit")
-                    << format(": origin %a %a %a direction %a %a %a lo %a, found %g instead of %g",
-                              ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
-                              ray.direction.z, lo, answer.found ? answer.hit.t() : -1,
-                              expected ? static_cast<double>(expected->t) : -1);
+      ADD_FAILURE() << (answer.found ? "false hit: " : "missed hit: ") << describe();
     }
     tally.false_hits += wrong && answer.found;
     tally.missed += wrong && !answer.found;
     if (!answer.found || wrong) return;
     ++tally.hits;
     const double s = cost(*expected), cosine = effective_cosine(*expected);
-    tally.distance.push_back(static_cast<float>(static_cast<double>(abs(Q(answer.hit.t()) - expected->t)) *
-                                                speed * cosine / (kRoundoff * s)));
+    const double off =
+        static_cast<double>(abs(Q(answer.hit.t()) - expected->t)) * speed * cosine / (kRoundoff * s);
+    tally.distance.push_back(static_cast<float>(off));
+    if (off > kDecided && reported_++ < 3) ADD_FAILURE() << "another hit: " << describe();
     if (expected->inside < 1e-4 * subject_.size) return;  // normals of boxes change near their edges
     const WorldHit at = resolve_world(*scene_, answer.hit, ray, scratch_);
     const V p = line.at(expected->t), exact = chain_.outer_normal(reference_.normal(p));

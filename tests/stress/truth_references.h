@@ -131,25 +131,19 @@ class Torus {
     const Q speed = quad::length(line.d), middle = dot(center_ - line.o, line.d) / (speed * speed);
     const Q reach = 1.01 * (swept_ + tube_) / speed;
     Crossings out;
-    // Where a tube thicker or thinner by a little is met more or less often, the line nearly touches it.
-    const Q little = std::max(Q(3e-5 * tube_), touching);
-    const auto count = [&](const Q& tube) {
-      std::vector<Q> found;
-      search(line, tube, middle - reach, middle + reach, 1e-3 * tube_ / speed, speed, found);
-      return found;
-    };
-    const std::vector<Q> found = count(tube_);
-    if (little > .3 * tube_ || count(tube_ - little).size() != count(tube_ + little).size())
+    // At least the smaller of the two principal radii, whichever way the line goes.
+    const Q inner = std::min(tube_, Q(abs(swept_ - tube_)));
+    std::vector<Q> found;
+    const Q width = 1e-3 * tube_ / speed, bend = width * speed * width * speed / inner;
+    if (search(line, middle - reach, middle + reach, width, speed, bend + touching, found))
       out.from_tangency = 0;
     for (const Q& t : found) {
       const V p = line.at(t), n = normal(p);
-      // At least the smaller of the two principal radii, whichever way the line goes.
-      const Q inner = std::min(tube_, Q(abs(swept_ - tube_)));
       out.all.push_back({t, 1e300, abs(dot(n, line.d)) / speed, inner, inner});
     }
     return out;
   }
-  Q height(const V& p) const { return distance(p, tube_); }
+  Q height(const V& p) const { return quad::length(p - ring(p)) - tube_; }
   V normal(const V& p) const { return quad::unit(p - ring(p)); }
   Coordinates coordinates(const V& p, const V&) const {
     const V at = frame_.local(p - center_);
@@ -163,23 +157,24 @@ class Torus {
     const V q = p - center_, &axis = frame_.rows[2];
     return center_ + swept_ * quad::unit(q - dot(q, axis) * axis);
   }
-  Q distance(const V& p, const Q& tube) const { return quad::length(p - ring(p)) - tube; }
-  void search(const Line& line, const Q& tube, Q a, Q b, const Q& width, const Q& speed,
+  /// All sign changes of the height in (a, b). True where there may be more: two within one `width`, which
+  /// need a height below `bend` there, or three, which need a slope that is nearly nothing.
+  bool search(const Line& line, Q a, Q b, const Q& width, const Q& speed, const Q& bend,
               std::vector<Q>& out) const {
-    const Q middle = (a + b) / 2;
-    if (abs(distance(line.at(middle), tube)) > speed * (b - a) / 2) return;
+    const Q middle = (a + b) / 2, at_middle = abs(height(line.at(middle)));
+    if (at_middle > speed * (b - a) / 2) return false;
     if (b - a > width) {
-      search(line, tube, a, middle, width, speed, out);
-      search(line, tube, middle, b, width, speed, out);
-      return;
+      const bool before = search(line, a, middle, width, speed, bend, out);
+      return search(line, middle, b, width, speed, bend, out) || before;
     }
-    const bool positive = distance(line.at(a), tube) > 0;
-    if (positive == (distance(line.at(b), tube) > 0)) return;
+    const bool positive = height(line.at(a)) > 0;
+    if (positive == (height(line.at(b)) > 0)) return at_middle < bend;
     for (int i = 0; i < 90; ++i) {
       const Q x = (a + b) / 2;
-      ((distance(line.at(x), tube) > 0) == positive ? a : b) = x;
+      ((height(line.at(x)) > 0) == positive ? a : b) = x;
     }
     out.push_back((a + b) / 2);
+    return abs(dot(normal(line.at(out.back())), line.d)) * width < 2 * bend;
   }
 
   V center_;
