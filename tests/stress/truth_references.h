@@ -67,8 +67,10 @@ class Plane : public quad::Plane {
   Coordinates coordinates(const V& p, const V& direction) const {
     const V m = dot(n_, direction) > 0 ? Q(-1) * n_ : n_;
     V u(-m.y, m.x, 0);
-    u = quad::unit(quad::length(u) < kEpsilon ? V(m.z, 0, -m.x) : u);
-    return {dot(p - on_, u), dot(p - on_, cross(m, u)), 1, 1};
+    // The nearer the normal is to the z axis, the more a rounding of it turns the axes of the pattern.
+    const Q turn = quad::length(u), firm = turn < kEpsilon ? Q(1) : turn;
+    u = quad::unit(turn < kEpsilon ? V(m.z, 0, -m.x) : u);
+    return {dot(p - on_, u), dot(p - on_, cross(m, u)), firm, firm};
   }
 };
 
