@@ -59,16 +59,16 @@ struct Place {
 };
 
 /// Between the two sides of a ball that is flattened and oblique a ray passes thousands of boxes of
-/// triangles: a ray there takes as long as a hundred elsewhere.
+/// triangles: a ray there takes as long as two hundred elsewhere.
 std::vector<Place> places() {
   return {
-      {"unit ball", .24, 1, {}, {}},
-      {"radius 1e-6", .24, 1e-6, {}, {}},
-      {"radius 1e6, 1000 radii away", .24, 1e6, {700, -500, 500}, {}},
-      {"radius 1, 1e6 radii away", .24, 1, {7e5, -5e5, 5e5}, {}},
-      {"scaled by 3, .01, 50, turned", .02, 1, {}, then(scaling({3, .01, 50}), test::about({1, 2, 3}, 77))},
+      {"unit ball", .2495, 1, {}, {}},
+      {"radius 1e-6", .2495, 1e-6, {}, {}},
+      {"radius 1e6, 1000 radii away", .2495, 1e6, {700, -500, 500}, {}},
+      {"radius 1, 1e6 radii away", .2495, 1, {7e5, -5e5, 5e5}, {}},
+      {"scaled by 3, .01, 50, turned", .001, 1, {}, then(scaling({3, .01, 50}), test::about({1, 2, 3}, 77))},
       {"scaled by 30, 1, -1e-2, sheared, far",
-       .02,
+       .001,
        1,
        {},
        then(then(scaling({30, 1, -1e-2}), test::about({2, -1, 3}, 13)),
@@ -142,6 +142,9 @@ void run(const std::string& name, int levels, std::uint64_t at_least) {
     for (std::size_t i = next++; i < all.size(); i = next++) {
       Dice own(kSeed + 1 + i);
       leaks[i] = shoot(mesh, all[i], rays[i], own);
+      std::printf("%s: %llu rays, %llu leaks\n", all[i].name, static_cast<unsigned long long>(rays[i]),
+                  static_cast<unsigned long long>(leaks[i]));
+      std::fflush(stdout);
     }
   };
   std::thread other(work);
@@ -159,7 +162,7 @@ void run(const std::string& name, int levels, std::uint64_t at_least) {
 TEST(LeaksTest, ClosedMeshesHold) { run("leaks-short", 6, std::uint64_t{1} << 18); }
 
 // More than a hundred million rays in all, through two million triangles.
-TEST(LeaksTest, DISABLED_ClosedMeshesHoldLong) { run("leaks", 9, scaled_count(100e6)); }
+TEST(LeaksTest, DISABLED_ClosedMeshesHoldLong) { run("leaks", 9, scaled_count(101e6)); }
 
 }  // namespace
 }  // namespace rayshade::stress

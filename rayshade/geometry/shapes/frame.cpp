@@ -23,7 +23,7 @@ AxisFrame axis_frame(const Vec3& axis) {
 }
 
 double turns(double c, double s, bool mirrored) {
-  constexpr double kOnSurface = 1e-9;
+  constexpr double kOnSurface = 1e-6;  // thin tubes far from the origin are rounded that much
   const double angle = std::fabs(c * c + s * s - 1) < kOnSurface ? fn::atan2(std::fabs(s), c)
                                                                  : fn::acos(std::clamp(c, -1.0, 1.0));
   const double out = angle / (2 * fn::kPi);
