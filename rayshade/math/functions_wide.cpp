@@ -8,10 +8,11 @@
 
 #include "rayshade/math/functions.h"
 
-// The header declares these only where every file is compiled for such a processor.
+// The header declares these only where every file is compiled for such a processor; clang wants to be told
+// that they are.
 extern "C" {
-__m256d Sleef_cinz_powd4_u10avx(__m256d, __m256d);
-__m512d Sleef_cinz_powd8_u10avx512fnofma(__m512d, __m512d);
+__attribute__((target("avx"))) __m256d Sleef_cinz_powd4_u10avx(__m256d, __m256d);
+__attribute__((target("avx512f"))) __m512d Sleef_cinz_powd8_u10avx512fnofma(__m512d, __m512d);
 }
 
 namespace rayshade::fn {
