@@ -31,6 +31,12 @@ struct Chain {
   }
   V inner_point(const V& p) const { return inner_vector(p - shift); }
   V inner_vector(const V& p) const { return {dot(p, gradient(0)), dot(p, gradient(1)), dot(p, gradient(2))}; }
+  quad::Line inner(const Ray& ray) const {
+    quad::Line line(ray);
+    line.o = inner_point(line.o);
+    line.d = inner_vector(line.d);
+    return line;
+  }
   V outer_normal(const V& n) const {
     return quad::unit(n.x * gradient(0) + n.y * gradient(1) + n.z * gradient(2));
   }

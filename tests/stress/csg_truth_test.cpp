@@ -12,39 +12,13 @@
 
 #include "tests/stress/ray_trial.h"
 #include "tests/stress/truth_references.h"
+#include "tests/unit/geometry/spans.h"
 
 namespace rayshade::stress {
 namespace {
 
-using Spans = std::vector<std::pair<Q, Q>>;
+using Spans = test::Spans<Q>;
 using Reference = std::variant<Sphere, quad::Box, Torus>;
-
-bool within(const Spans& spans, const Q& t) {
-  return std::any_of(spans.begin(), spans.end(), [&](const auto& s) { return t > s.first && t < s.second; });
-}
-
-Spans combined(NodeKind operation, const Spans& a, const Spans& b) {
-  std::vector<Q> ends;
-  for (const Spans* spans : {&a, &b})
-    for (const auto& [from, to] : *spans) ends.insert(ends.end(), {from, to});
-  std::sort(ends.begin(), ends.end());
-  Spans out;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    if (ends[i] == ends[i + 1]) continue;
-    const Q middle = (ends[i] + ends[i + 1]) / 2;
-    const bool in_a = within(a, middle), in_b = within(b, middle);
-    const bool in = operation == NodeKind::kUnion       ? in_a || in_b
-                    : operation == NodeKind::kIntersect ? in_a && in_b
-                                                        : in_a && !in_b;
-    if (!in) continue;
-    if (!out.empty() && out.back().second == ends[i]) {
-      out.back().second = ends[i + 1];
-    } else {
-      out.emplace_back(ends[i], ends[i + 1]);
-    }
-  }
-  return out;
-}
 
 /// A face that the ray meets.
 struct Face {
@@ -83,17 +57,11 @@ class Solid {
     std::vector<Spans> spans;
     for (std::size_t i = 0; i < primitives_.size(); ++i) {
       const Primitive& p = primitives_[i];
-      const quad::Line line = inner(p.chain, ray);
+      const quad::Line line = p.chain.inner(ray);
       const double unit = kRoundoff * p.sizes(ray, line, 0);
-      const quad::Crossings all = std::visit(
-          [&](const auto& reference) {
-            if constexpr (requires { reference.crossings(line, kDecided * unit); }) {
-              return reference.crossings(line, kDecided * unit);
-            } else {
-              return reference.crossings(line);
-            }
-          },
-          p.reference);
+      const quad::Crossings all =
+          std::visit([&](const auto& reference) { return all_crossings(reference, line, kDecided * unit); },
+                     p.reference);
       if (!(all.from_tangency > kDecided * unit)) return false;
       std::vector<Face> own;
       for (const quad::Crossing& c : all.all) {
@@ -115,13 +83,6 @@ class Solid {
   /// The largest tolerance of an operation along the ray, in units of t.
   double tolerance(const Ray& ray) const { return tolerance_of(tree_, ray); }
   const Primitive& primitive(std::size_t i) const { return primitives_[i]; }
-
-  static quad::Line inner(const Chain& chain, const Ray& ray) {
-    quad::Line line{Ray()};
-    line.o = chain.inner_point(V(ray.origin));
-    line.d = chain.inner_vector(V(ray.direction));
-    return line;
-  }
 
  private:
   /// `outer`: the maps of what the node is in, outermost first.
@@ -195,7 +156,7 @@ class Solid {
     if (tree.members.empty()) return spans[tree.primitive];
     Spans out = spans_of(tree.members[0], spans);
     for (std::size_t i = 1; i < tree.members.size(); ++i)
-      out = combined(tree.kind, out, spans_of(tree.members[i], spans));
+      out = test::combine(tree.kind, out, spans_of(tree.members[i], spans));
     return out;
   }
   static double tolerance_of(const Tree& tree, const Ray& ray) {
@@ -277,7 +238,7 @@ void shoot(const Solid& solid, const CompiledScene& scene, const Intersector& wo
   count.hits += answer.found;
   if (!right || !at_alone) return;
   const Primitive& p = solid.primitive(want.alone->solid);
-  const quad::Line line = Solid::inner(p.chain, ray);
+  const quad::Line line = p.chain.inner(ray);
   const double s = p.sizes(ray, line, want.alone->t), speed = static_cast<double>(quad::length(line.d));
   const double bend = static_cast<double>(want.alone->curvature);
   const double least = bend > 0 ? std::sqrt(kRoundoff * s / bend) : 0;

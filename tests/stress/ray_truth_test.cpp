@@ -13,13 +13,13 @@ void all_shapes(const std::string& name, int shapes) {
   const auto place = [](Dice& dice, double s) {
     return s * (dice.below(2) ? 1 : std::pow(10.0, dice.uniform(0, 6))) * dice.in_box(1);
   };
-  report.run("sphere", {4, 4, 3, 800}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
+  report.run("sphere", {4, 2, 3, 200}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
     const double s = any_scale(dice);
     const shape::Sphere sphere{s, place(dice, s)};
     subject = {sphere.center, s, 1, {}};
     return std::pair{b.sphere(sphere.radius, sphere.center), Sphere(sphere)};
   });
-  report.run("box", {4, 10, 3, 800}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
+  report.run("box", {4, 2, 3, 200}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
     const double s = any_scale(dice);
     const Vec3 lo = place(dice, s);
     const shape::Box box{lo, lo + s * Vec3{dice.uniform(.2, 1), dice.uniform(.2, 1), dice.uniform(.2, 1)}};
@@ -29,13 +29,13 @@ void all_shapes(const std::string& name, int shapes) {
                {box.lo, box.hi, {box.lo.x, box.hi.y, .5 * (box.lo.z + box.hi.z)}}};
     return std::pair{b.box(box.lo, box.hi), quad::Box(box)};
   });
-  report.run("plane", {4, 10, 3, 800}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
+  report.run("plane", {4, 4, 3, 200}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
     const double s = any_scale(dice);
     const shape::Plane plane{place(dice, s), dice.direction()};
     subject = {plane.point, s, 1, {}};
     return std::pair{b.plane(plane.point, plane.normal), Plane(plane)};
   });
-  report.run("disc", {4, 10, 3, 800}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
+  report.run("disc", {4, 3, 3, 200}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
     const double s = any_scale(dice);
     const shape::Disc disc{s, place(dice, s), dice.direction()};
     subject = {disc.center, s, 1, {}};
@@ -55,9 +55,9 @@ void all_shapes(const std::string& name, int shapes) {
       return std::pair{b.triangle(p[0], p[1], p[2]), Triangle(p)};
     };
   };
-  report.run("triangle", {4, 4, 3, 800}, 1, triangle(.5));
-  report.run("needle triangle", {4, 4, 3, 800}, 1, triangle(5));
-  report.run("polygon", {4, 10, 3, 800}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
+  report.run("triangle", {4, 2, 3, 200}, 1, triangle(.5));
+  report.run("needle triangle", {4, 2, 3, 200}, 1, triangle(5));
+  report.run("polygon", {4, 3, 3, 200}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
     const double s = any_scale(dice);
     const Vec3 at = place(dice, s);
     Vec3 e1, e2;
@@ -77,14 +77,14 @@ void all_shapes(const std::string& name, int shapes) {
       return normalize(Vec3{0, 0, 1} + std::pow(10.0, -dice.uniform(2, 12)) * dice.direction());
     return dice.direction();
   };
-  report.run("cylinder", {6, 8, 3, 800}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
+  report.run("cylinder", {6, 2, 3, 200}, 1, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
     const double s = any_scale(dice);
     const Vec3 bottom = place(dice, s), top = bottom + s * axis(dice);
     const shape::Cylinder cylinder{s * dice.uniform(.1, 1), bottom, top};
     subject = {.5 * (bottom + top), s, 1, {}};
     return std::pair{b.cylinder(cylinder.radius, bottom, top), Wall(cylinder)};
   });
-  report.run("cone, some nearly a cylinder", {8, 8, 3, 800}, 1,
+  report.run("cone, some nearly a cylinder", {8, 2, 3, 200}, 1,
              [&](SceneBuilder& b, Dice& dice, Subject& subject) {
                const double s = any_scale(dice);
                const Vec3 bottom = place(dice, s), top = bottom + s * axis(dice);
@@ -96,7 +96,7 @@ void all_shapes(const std::string& name, int shapes) {
                subject = {.5 * (bottom + top), s, 1, {}};
                return std::pair{b.cone(r, bottom, other, top), Wall(cone)};
              });
-  report.run("torus, some thin", {8, 8, 3, 800}, 10, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
+  report.run("torus, some thin", {8, 2, 3, 200}, 10, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
     const double s = any_scale(dice);
     const shape::Torus torus{s, s * std::pow(10.0, -dice.uniform(.3, 3)), place(dice, s), axis(dice)};
     subject = {torus.center, s, 1, {}};
@@ -110,7 +110,7 @@ void all_shapes(const std::string& name, int shapes) {
     return std::pair{b.torus(torus.swept, torus.tube, torus.center, torus.axis), Torus(torus)};
   });
   report.run(
-      "blob, up to six balls", {16, 16, 3, 800}, 10, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
+      "blob, up to six balls", {16, 2, 3, 200}, 10, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
         const double s = any_scale(dice);
         const Vec3 at = place(dice, s);
         shape::Blob blob;
@@ -121,7 +121,7 @@ void all_shapes(const std::string& name, int shapes) {
         for (const shape::Metaball& ball : blob.balls) subject.marks.push_back(ball.center);
         return std::pair{b.blob(blob.threshold, blob.balls), Blob(blob)};
       });
-  report.run("height field, 9 x 9", {4, 4, 3, 800}, 4, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
+  report.run("height field, 9 x 9", {4, 4, 3, 200}, 4, [&](SceneBuilder& b, Dice& dice, Subject& subject) {
     constexpr int kSize = 9;
     std::vector<float> altitudes;
     const double relief = std::pow(10.0, -dice.uniform(0, 3));

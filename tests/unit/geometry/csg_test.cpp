@@ -9,6 +9,7 @@
 
 #include "rayshade/geometry/resolve.h"
 #include "tests/unit/geometry/scene_builder.h"
+#include "tests/unit/geometry/spans.h"
 
 namespace rayshade {
 namespace {
@@ -18,36 +19,7 @@ using test::SceneBuilder;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The parts of a ray inside a solid: sorted, disjoint.
-using Spans = std::vector<std::pair<double, double>>;
-
-bool inside(const Spans& spans, double t) {
-  return std::any_of(spans.begin(), spans.end(), [&](const auto& s) { return t > s.first && t < s.second; });
-}
-
-Spans combine(NodeKind operation, const Spans& a, const Spans& b) {
-  std::vector<double> ends;
-  for (const Spans* spans : {&a, &b}) {
-    for (const auto& [from, to] : *spans) ends.insert(ends.end(), {from, to});
-  }
-  std::sort(ends.begin(), ends.end());
-  Spans out;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    if (ends[i] == ends[i + 1]) continue;
-    const double middle = (ends[i] + ends[i + 1]) / 2;
-    const bool in_a = inside(a, middle), in_b = inside(b, middle);
-    const bool in = operation == NodeKind::kUnion       ? in_a || in_b
-                    : operation == NodeKind::kIntersect ? in_a && in_b
-                                                        : in_a && !in_b;
-    if (!in) continue;
-    if (!out.empty() && out.back().second == ends[i]) {
-      out.back().second = ends[i + 1];
-    } else {
-      out.emplace_back(ends[i], ends[i + 1]);
-    }
-  }
-  return out;
-}
+using Spans = test::Spans<double>;
 
 /// A random tree of spheres and boxes, as a scene and as something that can be intersected with a line.
 struct Solid {
@@ -102,8 +74,7 @@ struct Solid {
       return {{from, to}};
     }
     Spans out = members[0].along(ray);
-    for (std::size_t i = 1; i < members.size(); ++i)
-      out = rayshade::combine(kind, out, members[i].along(ray));
+    for (std::size_t i = 1; i < members.size(); ++i) out = test::combine(kind, out, members[i].along(ray));
     return out;
   }
 
