@@ -10,21 +10,30 @@
 namespace rayshade {
 
 Polygon::Polygon(const shape::Polygon& polygon, bool flip) : point_(polygon.points.front()) {
-  // Newell's sum, relative to the first vertex so that a polygon far from the origin keeps its accuracy.
-  Vec3 n, sizes;
-  Vec3 previous = polygon.points.back() - point_;
+  // Newell's sum, relative to the first vertex so that a polygon far from the origin keeps its accuracy, and
+  // summed with what each addition rounds away, so that many vertices cost nothing.
+  Vec3 n, lost, sizes;
+  double swept = 0;  // how far n goes if every vertex is off by a unit of its distance from the first
+  const std::size_t count = polygon.points.size();
+  Vec3 before = polygon.points[count - 2] - point_, previous = polygon.points[count - 1] - point_;
   for (const Vec3& vertex : polygon.points) {
     const Vec3 current = vertex - point_;
     const Vec3 difference = previous - current, sum = previous + current;
     const Vec3 term{difference.y * sum.z, difference.z * sum.x, difference.x * sum.y};
-    n += term;
+    const Vec3 next = n + term, part = next - n;
+    lost += (n - (next - part)) + (term - part);
+    n = next;
     sizes += abs(term);
+    swept += length(previous) * length(current - before);
     bounds_.add(vertex);
+    before = previous;
     previous = current;
   }
-  const auto count = polygon.points.size();
+  n += lost;
   normal_ = normalize(flip ? -n : n);
-  normal_error_ = kNormalizeError + kRoundoff * (static_cast<double>(count) + 8) * length(sizes) / length(n);
+  // Three roundings for every term; n is the sum of cross products of neighbours, so a vertex that is off by
+  // delta moves it by delta x (next - before).
+  normal_error_ = kNormalizeError + kRoundoff * (1 + (3 * length(sizes) + swept) / length(n));
 
   const Vec3 m = abs(n);
   const int dropped = m.x >= m.y && m.x >= m.z ? 0 : m.y >= m.z ? 1 : 2;
