@@ -38,8 +38,8 @@ struct BoxProbe {
 };
 
 /// may_meet(), and fills `probe`.
-bool make_probe(const ClipBox& box, double condition, const double* origin, const double* direction,
-                double lo, double hi, BoxProbe& probe);
+bool make_probe(const ClipBox& box, double condition, const ClipRay& ray, double lo, double hi,
+                BoxProbe& probe);
 
 class Hierarchy {
  public:

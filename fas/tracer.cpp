@@ -124,10 +124,9 @@ void Tracer::Parts::through_hierarchy(Job& job, std::uint32_t i, const Cut& cut)
   const Ray& ray = job.rays[i];
   const Hierarchy& hierarchy = *structure.hierarchy;
   BoxProbe probe;
-  if (!make_probe(hierarchy.clip_box(), structure.options.condition, ray.origin.data(), ray.direction.data(),
-                  ray.near, job.limit(i), probe)) {
+  const ClipRay clip_ray(ray.origin.data(), ray.direction.data());
+  if (!make_probe(hierarchy.clip_box(), structure.options.condition, clip_ray, ray.near, job.limit(i), probe))
     return;
-  }
   const auto visit = [&](std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t k = first; k < first + count && !job.settled(i); ++k)
       job.try_on(structure.order[k], i);

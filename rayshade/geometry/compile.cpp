@@ -21,8 +21,22 @@ constexpr int kMostRecursion = 400;
 /// CSG with more operands than this is combined as a balanced tree instead of from the left: the same solid,
 /// and not as many levels as operands.
 constexpr std::size_t kLongestFold = 64;
-/// A named object is looked at this many levels deep for being a single primitive.
-constexpr int kSingleDepth = 8;
+/// A named object is looked at this many levels deep for what really stands there.
+constexpr int kWrappings = 8;
+/// CSG of so few primitives is one leaf without a hierarchy, whose box matters little.
+constexpr std::uint64_t kFewOperands = 16;
+/// Terms of a map this small beside others are from rounding: turns by 90 degrees have them.
+constexpr double kNoTurn = 1e-12;
+
+/// Whether boxes along the axes are so again after the map. Turned or sheared ones fit the better the larger
+/// they are, so objects that are, stay instances.
+bool keeps_boxes(const Affine& map) {
+  for (const Vec3& row : map.rows) {
+    const double most = kNoTurn * max_abs(row);
+    if ((std::fabs(row.x) > most) + (std::fabs(row.y) > most) + (std::fabs(row.z) > most) > 1) return false;
+  }
+  return true;
+}
 
 static_assert(static_cast<int>(LeafKind::kHeightField) == static_cast<int>(NodeKind::kHeightField));
 
@@ -36,7 +50,8 @@ class Compiler {
         facts_(scene),
         pools_(scene, facts_, provider, options.flip_normals, out),
         placements_(scene, facts_, out),
-        paths_(scene, facts_, out) {}
+        paths_(scene, facts_, out),
+        most_copies_(options.most_copies) {}
 
   void run();
 
@@ -82,7 +97,8 @@ class Compiler {
   Leaf csg_leaf(NodeKind operation, std::uint32_t left, std::uint32_t right, const Context& inner);
   std::uint32_t shared_group(std::uint32_t object, bool transparent_outside, const Location& where,
                              int depth);
-  bool is_single(NodeId id) const;
+  bool copied(std::uint32_t object, const Context& inner) const;
+  const Node& innermost(NodeId id) const;
   std::uint32_t finish_group(Build&& build);
   void store_group(std::uint32_t index, Build&& build);
   bool solid_primitive(const Node& node) const;
@@ -96,6 +112,7 @@ class Compiler {
   ShapePools pools_;
   PlacementTable placements_;
   PathTable paths_;
+  std::uint64_t most_copies_;
   std::vector<GroupFacts> group_facts_;
   std::unordered_map<std::uint64_t, std::uint32_t>
       shared_;  ///< 2 * named object + transparent_outside: group
@@ -148,7 +165,7 @@ void Compiler::flatten(Build& build, std::span<const NodeId> members, const Cont
     const Context inner = enter(node, frames.back().context);
     if (node.kind == NodeKind::kInstance) {
       const NodeId& body = scene_.named_objects[node.payload].node;
-      if (facts_.uses(node.payload) <= 1 || is_single(body)) {
+      if (copied(node.payload, inner)) {
         frames.push_back({{&body, 1}, inner});
       } else {
         add_instance(build, node, inner, depth);
@@ -290,20 +307,33 @@ Leaf Compiler::csg_leaf(NodeKind operation, std::uint32_t left, std::uint32_t ri
   return leaf;
 }
 
-/// Whether a named object is one primitive, perhaps wrapped a few times: then sharing it would save nothing.
-bool Compiler::is_single(NodeId id) const {
-  for (int level = 0; level < kSingleDepth; ++level) {
+/// Whether a named object itself stands at this place, not an instance of it.
+bool Compiler::copied(std::uint32_t object, const Context& inner) const {
+  const NodeId body = scene_.named_objects[object].node;
+  const std::uint64_t uses = facts_.uses(object);
+  // One primitive: sharing it would save nothing.
+  if (uses <= 1 || is_primitive(innermost(body).kind)) return true;
+  if (facts_.primitives(body) > most_copies_ / uses) return false;
+  if (inner.placement == kNone) return true;
+  const Placement& placement = out_.placements[inner.placement];
+  return !placement.animated() && (keeps_boxes(placement.map.forward) ||
+                                   (facts_.primitives(body) <= kFewOperands && is_csg(innermost(body).kind)));
+}
+
+/// What stands in a node, where that is one thing, perhaps wrapped a few times.
+const Node& Compiler::innermost(NodeId id) const {
+  for (int level = 0; level < kWrappings; ++level) {
     const Node& node = scene_.nodes[id];
-    if (is_primitive(node.kind)) return true;
+    if (is_primitive(node.kind)) return node;
     if (node.kind == NodeKind::kInstance) {
       id = scene_.named_objects[node.payload].node;
     } else if (scene_.aggregates[node.payload].members.size() == 1) {
       id = scene_.aggregates[node.payload].members[0];
     } else {
-      return false;
+      return node;
     }
   }
-  return false;
+  return scene_.nodes[id];
 }
 
 void Compiler::add_instance(Build& build, const Node& node, const Context& inner, int depth) {

@@ -96,6 +96,7 @@ struct Csg {
   std::uint32_t placement = kNone;    ///< the CSG object's own space: the scale of its tolerance
   double tolerance = kEpsilon;        ///< EPS of `next`, in its own space (objects.md 7.2), smaller for
                                       ///< objects smaller than one unit
+  bool in_packs = false;              ///< evaluated for many rays at once (csg_pack.h)
 };
 
 /// A shared group standing somewhere. The order of its leaf shifts the ranks of its members.
@@ -126,7 +127,11 @@ struct CompileOptions {
   Interval shutter;           ///< of the first frame
   double frame = 0;
   bool hierarchies = true;  ///< false: loops over all leaves everywhere (the oracle)
-  int threads = 1;          ///< at most so many build hierarchies; the result does not depend on it
+  /// Objects used several times are shared where their copies would have more primitives than this. Copies
+  /// are faster: nothing needs to be taken into the space of an instance one ray at a time, and what is met
+  /// is found among primitives, not among instances. Sharing saves memory, which is not worth it for so few.
+  std::uint64_t most_copies = 4096;
+  int threads = 1;  ///< at most so many build hierarchies; the result does not depend on it
 };
 
 /// Counts for the statistics.

@@ -2,29 +2,16 @@
 // Constructive solid geometry as objects.md 7 says, by nearest hits of the operands: U1/U2, I1/I2 and the two
 // branches of the difference. Works for lists as solids and for open operands as the original does, which
 // sorted intervals of closed solids would not.
-#include <algorithm>
-
+#include "rayshade/geometry/csg_steps.h"
 #include "rayshade/geometry/trace_context.h"
 
 namespace rayshade {
 namespace {
 
-/// A pair of operands that cross more often along one ray is taken as missed; every step of the loop
-/// advances, so this only bounds the time.
-constexpr int kMostSteps = 10'000;
-
 class CsgQuery {
  public:
-  CsgQuery(TraceContext& context, const Csg& csg, const Ray& ray, double hi)
-      : context_(context), csg_(csg), ray_(ray), hi_(hi), outer_instances_(context.instances.count) {
-    Vec3 direction = ray.direction;
-    if (csg.placement != kNone) {
-      const bool animated = context.scene.placements[csg.placement].animated();
-      direction = context.placement_of(csg.placement, animated, ray.time).inverse.vector(direction);
-    }
-    tolerance_ = csg.tolerance / length(direction);
-    rounding_ = 0x1p-48 * max_abs(ray.origin) / max_abs(ray.direction);
-  }
+  CsgQuery(TraceContext& context, const Csg& csg, GroupRay& ray, double hi)
+      : context_(context), csg_(csg), ray_(ray), hi_(hi), outer_instances_(context.instances.count) {}
 
   /// The hit, or nothing where there is none before the far limit. Its t may lie beyond it.
   const Hit* run(double lo) {
@@ -55,10 +42,22 @@ class CsgQuery {
     return s.found;
   }
 
-  /// next(X, t): beyond t by the tolerance in the object's own space, and in any case by what rounding needs.
+  /// Most rays are answered before anything needs them.
+  void find_tolerances() {
+    const Ray& ray = ray_.ray();
+    const Affine* inverse = nullptr;
+    if (csg_.placement != kNone) {
+      const bool animated = context_.scene.placements[csg_.placement].animated();
+      inverse = &context_.placement_of(csg_.placement, animated, ray.time).inverse;
+    }
+    tolerance_ = csg_steps::tolerance(csg_, ray, inverse);
+    rounding_ = csg_steps::rounding(ray);
+  }
+
+  /// next(X, t).
   bool search_beyond(int side, double t) {
-    const double step = std::max(tolerance_, rounding_ + 0x1p-48 * std::fabs(t));
-    return search(side, std::max(t + step, std::nextafter(t, kFar)));
+    if (!(tolerance_ >= 0)) find_tolerances();
+    return search(side, csg_steps::beyond(t, tolerance_, rounding_));
   }
 
   /// The entering property of objects.md 7.2.
@@ -66,15 +65,16 @@ class CsgQuery {
     const Side& s = sides_[side];
     if (s.hit.flag != EnterFlag::kUnset) return s.hit.flag == EnterFlag::kEntering;
     const CompiledScene& scene = context_.scene;
-    Ray local = ray_;
-    const auto descend = [&](const Leaf& leaf) {
-      if (leaf.placement == kNone) return;
-      local = transformed(local, context_.placement_of(leaf.placement, leaf.animated, ray_.time).inverse);
-    };
-    for (std::uint32_t i = outer_instances_; i < s.hit.instances.count; ++i) {
-      descend(scene.leaves[s.hit.instances.leaves[i]]);
-    }
     const Leaf& leaf = scene.leaves[s.hit.leaf];
+    if (s.hit.instances.count == outer_instances_)
+      return primitive_enters(scene, leaf, ray_.in(context_, leaf), s.lo, s.hit.shape);
+    Ray local = ray_.ray();
+    const auto descend = [&](const Leaf& to) {
+      if (to.placement == kNone) return;
+      local = transformed(local, context_.placement_of(to.placement, to.animated, local.time).inverse);
+    };
+    for (std::uint32_t i = outer_instances_; i < s.hit.instances.count; ++i)
+      descend(scene.leaves[s.hit.instances.leaves[i]]);
     descend(leaf);
     return primitive_enters(scene, leaf, local, s.lo, s.hit.shape);
   }
@@ -89,7 +89,7 @@ class CsgQuery {
     search(1, lo);
     if (!sides_[0].found && !sides_[1].found) return nullptr;
     int near = sides_[0].found && !(sides_[1].found && sides_[1].t() < sides_[0].t()) ? 0 : 1;
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < csg_steps::kMost; ++step) {
       const int far = 1 - near;
       if (sides_[near].t() > hi_) return nullptr;
       if (!sides_[far].found || enters(far)) return result(near, enters(near));
@@ -102,7 +102,7 @@ class CsgQuery {
   const Hit* run_intersection(double lo) {
     if (!search(0, lo) || !search(1, lo)) return nullptr;
     int near = sides_[1].t() < sides_[0].t() ? 1 : 0;
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < csg_steps::kMost; ++step) {
       const int far = 1 - near;
       if (sides_[near].t() > hi_) return nullptr;
       if (!enters(far)) return result(near, enters(near));
@@ -115,7 +115,7 @@ class CsgQuery {
   const Hit* run_difference(double lo) {
     if (!search(0, lo)) return nullptr;
     search(1, lo);
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < csg_steps::kMost; ++step) {
       const Side &a = sides_[0], &b = sides_[1];
       if (!b.found) return result(0, enters(0));
       if (std::min(a.t(), b.t()) > hi_) return nullptr;
@@ -132,17 +132,17 @@ class CsgQuery {
 
   TraceContext& context_;
   const Csg& csg_;
-  const Ray& ray_;
+  GroupRay& ray_;
   double hi_;
   std::uint32_t outer_instances_;
-  double tolerance_, rounding_;
+  double tolerance_ = -1, rounding_ = 0;  ///< negative: not found yet
   Side sides_[2];
   bool result_enters_ = true;
 };
 
 }  // namespace
 
-bool improve_by_csg(TraceContext& context, const Leaf& leaf, const Ray& ray, double lo, std::uint64_t base,
+bool improve_by_csg(TraceContext& context, const Leaf& leaf, GroupRay& ray, double lo, std::uint64_t base,
                     Hit& best) {
   constexpr auto kKind = static_cast<std::size_t>(LeafKind::kCsg);
   ++context.scratch.counts.tests[kKind];

@@ -1,32 +1,12 @@
 // SPDX-License-Identifier: MIT
 // exact(leaf, ray, interval), and the loops over groups.
 #include <numeric>
-#include <utility>
 
 #include "fas/hierarchy.h"
 #include "rayshade/geometry/trace_context.h"
 
 namespace rayshade {
 namespace {
-
-/// The ray in the space of leaf after leaf: neighbours mostly share their placement.
-class LocalRay {
- public:
-  explicit LocalRay(const Ray& outer) : outer_(outer) {}
-  const Ray& in(TraceContext& context, const Leaf& leaf) {
-    if (leaf.placement == kNone) return outer_;
-    if (leaf.placement != placement_) {
-      placement_ = leaf.placement;
-      local_ = transformed(outer_, context.placement_of(leaf.placement, leaf.animated, outer_.time).inverse);
-    }
-    return local_;
-  }
-
- private:
-  const Ray& outer_;
-  std::uint32_t placement_ = kNone;
-  Ray local_;
-};
 
 template <class Shape>
 bool improve_by_shape(TraceContext& context, const Shape& shape, const Leaf& leaf, LeafId id,
@@ -52,18 +32,19 @@ bool improve_by_instance(TraceContext& context, LeafId id, const Leaf& leaf, con
   InstancePath& path = context.instances;
   if (path.count >= InstancePath::kCapacity) return false;  // the compile step refuses such scenes
   path.leaves[path.count++] = id;
-  const bool improved = improve_by_group(context, context.scene.instances[leaf.shape].group, inner, lo, mask,
+  GroupRay ray(inner);
+  const bool improved = improve_by_group(context, context.scene.instances[leaf.shape].group, ray, lo, mask,
                                          base + leaf.order, best);
   --path.count;
   return improved;
 }
 
 /// The one switch over kinds.
-inline bool improve(TraceContext& context, LeafId id, const Leaf& leaf, const Ray& ray, LocalRay& local,
-                    double lo, Opacity mask, std::uint64_t base, Hit& best) {
+inline bool improve(TraceContext& context, LeafId id, const Leaf& leaf, GroupRay& ray, double lo,
+                    Opacity mask, std::uint64_t base, Hit& best) {
   const CompiledScene& scene = context.scene;
   const auto shape = [&](const auto& pool) {
-    return improve_by_shape(context, pool[leaf.shape], leaf, id, local.in(context, leaf), lo, base, best);
+    return improve_by_shape(context, pool[leaf.shape], leaf, id, ray.in(context, leaf), lo, base, best);
   };
   switch (leaf.kind) {
     case LeafKind::kPlane:
@@ -95,50 +76,33 @@ inline bool improve(TraceContext& context, LeafId id, const Leaf& leaf, const Ra
     case LeafKind::kCsg:
       return improve_by_csg(context, leaf, ray, lo, base, best);
     case LeafKind::kInstance:
-      return improve_by_instance(context, id, leaf, local.in(context, leaf), lo, mask, base, best);
+      return improve_by_instance(context, id, leaf, ray.in(context, leaf), lo, mask, base, best);
   }
   return false;
 }
 
-bool occludes(TraceContext& context, LeafId id, const Leaf& leaf, const Ray& ray, LocalRay& local, double lo,
-              double hi, Opacity mask) {
+bool occludes(TraceContext& context, LeafId id, const Leaf& leaf, GroupRay& ray, double lo, double hi,
+              Opacity mask) {
   if (leaf.kind == LeafKind::kInstance) {
     if ((leaf.opacity & mask) == 0) return false;
-    return group_occludes(context, context.scene.instances[leaf.shape].group, local.in(context, leaf), lo, hi,
-                          mask);
+    GroupRay inner(ray.in(context, leaf));
+    return group_occludes(context, context.scene.instances[leaf.shape].group, inner, lo, hi, mask);
   }
   if ((leaf.opacity & ~mask) != 0) return false;
   Hit hit;
   start_search(hit, hi);
-  return improve(context, id, leaf, ray, local, lo, mask, 0, hit) && before_far_limit(hit, hi);
+  return improve(context, id, leaf, ray, lo, mask, 0, hit) && before_far_limit(hit, hi);
 }
 
-/// Runs `test(leaf)` over leaves of a group that the ray may meet, until it answers true.
+/// Runs `test(first, last)` over the bounded leaves of a group that the ray may meet, until it answers true.
 template <class Limit, class Test>
-bool over_group(TraceContext& context, const Group& group, const Ray& ray, double lo, Opacity mask,
-                const Limit& limit, const Test& test_leaf) {
-  const auto test = [&](LeafId first, LeafId last) {
-    for (LeafId id = first; id < last; ++id) {
-      if (test_leaf(id)) return true;
-    }
-    return false;
-  };
-  // Of the world: not of the groups below the leaves that are tested here.
-  const fas::Cut cut = std::exchange(context.cut, {});
-  if (context.scratch.brute_force) return test(group.first, group.first + group.count);
-  const LeafId bounded = group.first + group.unbounded;
-  if (group.unbounded > 0 && test(group.first, bounded)) return true;
-  if (group.unbounded == group.count) return false;
-  if (group.few_simple) return test(bounded, group.first + group.count);
+bool through_hierarchy(TraceContext& context, const Group& group, GroupRay& ray, double lo, Opacity mask,
+                       const fas::Cut& cut, const Limit& limit, const Test& test) {
   ++context.bounds_tests;
-  const double o[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
-  const double d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
-  if (!group.hierarchy) {
-    return fas::may_meet(group.clip_box, group.condition, o, d, lo, limit()) &&
-           test(bounded, group.first + group.count);
-  }
+  const LeafId bounded = group.first + group.unbounded;
   fas::BoxProbe probe;
-  if (!fas::make_probe(group.hierarchy->clip_box(), group.condition, o, d, lo, limit(), probe)) return false;
+  if (!fas::make_probe(group.hierarchy->clip_box(), group.condition, ray.clip(), lo, limit(), probe))
+    return false;
   if (!probe.usable) return test(bounded, group.first + group.count);
   return fas::traverse(*group.hierarchy, cut, probe, mask, context.bounds_tests, limit,
                        [&](std::uint32_t first, std::uint32_t count) {
@@ -146,48 +110,102 @@ bool over_group(TraceContext& context, const Group& group, const Ray& ray, doubl
                        });
 }
 
+/// Whether the bounded leaves of a group without a hierarchy need to be tested.
+inline bool may_meet_bounded(TraceContext& context, const Group& group, GroupRay& ray, double lo, double hi) {
+  if (group.few_simple) return true;
+  if (group.unbounded == group.count) return false;
+  ++context.bounds_tests;
+  return fas::may_meet(group.clip_box, group.condition, ray.clip(), lo, hi);
+}
+
+void improve_by_leaves(TraceContext& context, LeafId first, LeafId last, GroupRay& ray, double lo,
+                       Opacity mask, std::uint64_t base, Hit& best, bool& improved) {
+  for (LeafId id = first; id < last; ++id) {
+    const Leaf& leaf = context.scene.leaves[id];
+    if ((leaf.opacity & mask) != 0) improved |= improve(context, id, leaf, ray, lo, mask, base, best);
+  }
+}
+
+[[gnu::noinline]] void improve_by_hierarchy(TraceContext& context, const Group& group, GroupRay& ray,
+                                            double lo, Opacity mask, std::uint64_t base, const fas::Cut& cut,
+                                            Hit& best, bool& improved) {
+  through_hierarchy(
+      context, group, ray, lo, mask, cut, [&] { return best.shape.t; },
+      [&](LeafId first, LeafId last) {
+        improve_by_leaves(context, first, last, ray, lo, mask, base, best, improved);
+        return false;
+      });
+}
+
+inline bool improve_by_group(TraceContext& context, const Group& group, GroupRay& ray, double lo,
+                             Opacity mask, std::uint64_t base, const fas::Cut& cut, Hit& best) {
+  const LeafId bounded = group.first + group.unbounded, end = group.first + group.count;
+  const bool all = context.scratch.brute_force;
+  bool improved = false;
+  improve_by_leaves(context, group.first, all ? end : bounded, ray, lo, mask, base, best, improved);
+  if (all) return improved;
+  if (group.hierarchy)
+    improve_by_hierarchy(context, group, ray, lo, mask, base, cut, best, improved);
+  else if (may_meet_bounded(context, group, ray, lo, best.shape.t))
+    improve_by_leaves(context, bounded, end, ray, lo, mask, base, best, improved);
+  return improved;
+}
+
+bool leaves_occlude(TraceContext& context, LeafId first, LeafId last, GroupRay& ray, double lo, double hi,
+                    Opacity mask) {
+  for (LeafId id = first; id < last; ++id) {
+    if (occludes(context, id, context.scene.leaves[id], ray, lo, hi, mask)) return true;
+  }
+  return false;
+}
+
+[[gnu::noinline]] bool hierarchy_occludes(TraceContext& context, const Group& group, GroupRay& ray, double lo,
+                                          double hi, Opacity mask, const fas::Cut& cut) {
+  return through_hierarchy(
+      context, group, ray, lo, mask, cut, [&] { return hi; },
+      [&](LeafId first, LeafId last) { return leaves_occlude(context, first, last, ray, lo, hi, mask); });
+}
+
+inline bool group_occludes(TraceContext& context, const Group& group, GroupRay& ray, double lo, double hi,
+                           Opacity mask, const fas::Cut& cut) {
+  const LeafId bounded = group.first + group.unbounded, end = group.first + group.count;
+  const bool all = context.scratch.brute_force;
+  if (leaves_occlude(context, group.first, all ? end : bounded, ray, lo, hi, mask)) return true;
+  if (all) return false;
+  if (group.hierarchy) return hierarchy_occludes(context, group, ray, lo, hi, mask, cut);
+  return may_meet_bounded(context, group, ray, lo, hi) &&
+         leaves_occlude(context, bounded, end, ray, lo, hi, mask);
+}
+
 }  // namespace
 
 bool improve_by_leaf(TraceContext& context, LeafId id, const Ray& ray, double lo, Opacity mask,
                      std::uint64_t base, Hit& best) {
-  LocalRay local(ray);
-  return improve(context, id, context.scene.leaves[id], ray, local, lo, mask, base, best);
+  GroupRay shared(ray);
+  return improve(context, id, context.scene.leaves[id], shared, lo, mask, base, best);
 }
 
 bool leaf_occludes(TraceContext& context, LeafId id, const Ray& ray, double lo, double hi, Opacity mask) {
-  LocalRay local(ray);
-  return occludes(context, id, context.scene.leaves[id], ray, local, lo, hi, mask);
+  GroupRay shared(ray);
+  return occludes(context, id, context.scene.leaves[id], shared, lo, hi, mask);
 }
 
-bool improve_by_group(TraceContext& context, std::uint32_t index, const Ray& ray, double lo, Opacity mask,
+bool improve_by_group(TraceContext& context, std::uint32_t index, GroupRay& ray, double lo, Opacity mask,
                       std::uint64_t base, Hit& best) {
-  LocalRay local(ray);
-  bool improved = false;
-  over_group(
-      context, context.scene.groups[index], ray, lo, mask, [&] { return best.shape.t; },
-      [&](LeafId id) {
-        const Leaf& leaf = context.scene.leaves[id];
-        if ((leaf.opacity & mask) != 0)
-          improved |= improve(context, id, leaf, ray, local, lo, mask, base, best);
-        return false;
-      });
-  return improved;
+  return improve_by_group(context, context.scene.groups[index], ray, lo, mask, base, {}, best);
 }
 
-bool group_occludes(TraceContext& context, std::uint32_t index, const Ray& ray, double lo, double hi,
+bool group_occludes(TraceContext& context, std::uint32_t index, GroupRay& ray, double lo, double hi,
                     Opacity mask) {
-  LocalRay local(ray);
-  return over_group(
-      context, context.scene.groups[index], ray, lo, mask, [&] { return hi; },
-      [&](LeafId id) { return occludes(context, id, context.scene.leaves[id], ray, local, lo, hi, mask); });
+  return group_occludes(context, context.scene.groups[index], ray, lo, hi, mask, {});
 }
 
 void ask_world(const CompiledScene& scene, const NearestQuery& query, NearestAnswer& answer,
                TraceScratch& scratch, const fas::Cut& cut) {
   TraceContext context(scene, scratch);
-  context.cut = cut;
   start_search(answer.hit, query.hi);
-  answer.found = improve_by_group(context, 0, query.ray, query.lo, query.mask, 0, answer.hit) &&
+  GroupRay ray(query.ray);
+  answer.found = improve_by_group(context, scene.groups[0], ray, query.lo, query.mask, 0, cut, answer.hit) &&
                  before_far_limit(answer.hit, query.hi);
   answer.tests = context.tests;
   answer.bounds_tests = context.bounds_tests;
@@ -196,8 +214,8 @@ void ask_world(const CompiledScene& scene, const NearestQuery& query, NearestAns
 void ask_world(const CompiledScene& scene, const OcclusionQuery& query, OcclusionAnswer& answer,
                TraceScratch& scratch, const fas::Cut& cut) {
   TraceContext context(scene, scratch);
-  context.cut = cut;
-  answer.occluded = group_occludes(context, 0, query.ray, query.lo, query.hi, query.mask);
+  GroupRay ray(query.ray);
+  answer.occluded = group_occludes(context, scene.groups[0], ray, query.lo, query.hi, query.mask, cut);
   answer.others = query.mask != kAnyOpacity;  // who knows
   answer.tests = context.tests;
   answer.bounds_tests = context.bounds_tests;
@@ -256,7 +274,8 @@ bool nearest_in_group(const CompiledScene& scene, std::uint32_t group, const Ray
   context.instances = hit.instances;
   Hit best;
   start_search(best, hi);
-  if (!improve_by_group(context, group, ray, lo, mask, order_base, best) || !before_far_limit(best, hi))
+  GroupRay shared(ray);
+  if (!improve_by_group(context, group, shared, lo, mask, order_base, best) || !before_far_limit(best, hi))
     return false;
   hit = best;
   return true;
@@ -265,7 +284,8 @@ bool nearest_in_group(const CompiledScene& scene, std::uint32_t group, const Ray
 bool occluded_in_group(const CompiledScene& scene, std::uint32_t group, const Ray& ray, double lo, double hi,
                        Opacity mask, TraceScratch& scratch) {
   TraceContext context(scene, scratch);
-  return group_occludes(context, group, ray, lo, hi, mask);
+  GroupRay shared(ray);
+  return group_occludes(context, group, shared, lo, hi, mask);
 }
 
 void TraceCounts::add(const TraceCounts& other) {

@@ -5,6 +5,7 @@
 
 #include "fas/hierarchy.h"
 #include "rayshade/geometry/compiled_scene.h"
+#include "rayshade/geometry/csg_pack.h"
 #include "rayshade/geometry/rank.h"
 #include "rayshade/geometry/resolve.h"
 
@@ -140,6 +141,7 @@ void CompiledScene::rebuild(bool hierarchies) {
   scale = groups[0].bounds.largest_extent();
   if (!(scale > 0) || !std::isfinite(scale)) scale = 1;
   if (has_csg) set_tolerances();
+  if (has_csg) choose_csg_for_packs(*this);
   measure_extents();
   count_bytes();
 }

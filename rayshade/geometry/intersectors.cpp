@@ -30,14 +30,19 @@ bool worth_a_box(LeafKind kind) {
 /// More leaves than this without a vector test are better left to a hierarchy.
 constexpr std::ptrdiff_t kSlowLeaves = 3;
 
+/// So many bounded leaves are worth asking first whether a ray comes near any of them.
+constexpr std::uint32_t kWorthAWorldBox = 6;
+
 }  // namespace
 
 bool traces_in_packs(const CompiledScene& scene) {
   const Group& world = scene.groups[0];
   const auto first = scene.leaves.begin() + world.first, last = first + world.count;
-  return world.count <= kPackLeaves && std::count_if(first, last, [](const Leaf& leaf) {
-                                         return leaf.animated || !has_vector_test(leaf.kind);
-                                       }) <= kSlowLeaves;
+  const auto slow = [&](const Leaf& leaf) {
+    if (leaf.kind == LeafKind::kCsg) return !scene.csgs[leaf.shape].in_packs;
+    return leaf.animated || !has_vector_test(leaf.kind);
+  };
+  return world.count <= kPackLeaves && std::count_if(first, last, slow) <= kSlowLeaves;
 }
 
 namespace {
@@ -120,6 +125,14 @@ class GroupIntersector : public Intersector {
     return n;
   }
 
+  /// Those of `mask` that may meet bounded leaves.
+  RayPack::Mask near_world(PackTracer& tracer, RayPack::Mask mask) const {
+    const Group& world = scene_.groups[0];
+    if (world.count - world.unbounded < kWorthAWorldBox) return mask;
+    tracer.count_bounds(mask);
+    return world.bounds.empty() ? 0 : clip_pack(world.bounds, world.condition, tracer.pack(), mask);
+  }
+
   RayPack::Mask near_box(PackTracer& tracer, std::size_t place, RayPack::Mask mask) const {
     const Bounds3& box = boxes_[place];
     if (mask == 0 || box.unbounded()) return mask;
@@ -129,8 +142,10 @@ class GroupIntersector : public Intersector {
 
   void nearest_in_pack(PackTracer& tracer) const {
     const Group& world = scene_.groups[0];
-    for (std::uint32_t k = 0; k < world.count; ++k) {
-      const RayPack::Mask mask = near_box(tracer, k, tracer.pack().all());
+    RayPack::Mask near = tracer.pack().all();
+    for (std::uint32_t k = 0; k < world.count && near != 0; ++k) {
+      if (k == world.unbounded) near = near_world(tracer, near);
+      const RayPack::Mask mask = near_box(tracer, k, near);
       if (mask != 0) tracer.improve(world.first + k, mask);
     }
     tracer.answer_nearest();
@@ -140,6 +155,7 @@ class GroupIntersector : public Intersector {
     const Group& world = scene_.groups[0];
     RayPack::Mask open = tracer.pack().all();
     for (std::uint32_t k = 0; k < world.count && open != 0; ++k) {
+      if (k == world.unbounded) open = near_world(tracer, open);
       const RayPack::Mask mask = near_box(tracer, k, open);
       if (mask != 0) open &= ~tracer.occlude(world.first + k, mask);
     }

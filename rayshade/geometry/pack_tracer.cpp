@@ -11,11 +11,6 @@ namespace {
 
 constexpr std::int64_t kNoRank = std::numeric_limits<std::int64_t>::max();
 
-void add_one(std::array<std::uint32_t, RayPack::kMost>& counts, RayPack::Mask mask, int count) {
-  for (int i = 0; i < count; ++i)
-    counts[static_cast<std::size_t>(i)] += static_cast<std::uint32_t>(mask >> i & 1);
-}
-
 }  // namespace
 
 template <class Query>
@@ -41,9 +36,10 @@ void PackTracer::load(std::span<const NearestQuery> queries, std::span<NearestAn
     places_[static_cast<std::size_t>(i)] = place;
     load_ray(queries[place], i);
     pack_.rank[i] = kNoRank;
-    tests_[static_cast<std::size_t>(i)] = bounds_tests_[static_cast<std::size_t>(i)] = 0;
   }
   opacity_ = queries[places_[0]].mask;
+  counter_.reset(count);
+  csg_.load(pack_);
 }
 
 void PackTracer::load(std::span<const OcclusionQuery> queries, const std::uint32_t* places, int count) {
@@ -55,22 +51,10 @@ void PackTracer::load(std::span<const OcclusionQuery> queries, const std::uint32
     const std::uint32_t place = places ? places[i] : static_cast<std::uint32_t>(i);
     places_[static_cast<std::size_t>(i)] = place;
     load_ray(queries[place], i);
-    tests_[static_cast<std::size_t>(i)] = bounds_tests_[static_cast<std::size_t>(i)] = 0;
   }
   opacity_ = queries[places_[0]].mask;
-}
-
-void PackTracer::count_bounds(RayPack::Mask mask) {
-  add_one(bounds_tests_, mask, pack_.count);
-  context_.bounds_tests += static_cast<std::uint32_t>(std::popcount(mask));
-}
-
-void PackTracer::count_tests(const Leaf& leaf, RayPack::Mask tested, RayPack::Mask hit) {
-  add_one(tests_, tested, pack_.count);
-  TraceCounts& counts = context_.scratch.counts;
-  const auto kind = static_cast<std::size_t>(leaf.kind);
-  counts.tests[kind] += static_cast<std::uint64_t>(std::popcount(tested));
-  counts.hits[kind] += static_cast<std::uint64_t>(std::popcount(hit));
+  counter_.reset(count);
+  csg_.load(pack_);
 }
 
 RayPack::Mask PackTracer::improve(LeafId id, RayPack::Mask mask) {
@@ -79,8 +63,16 @@ RayPack::Mask PackTracer::improve(LeafId id, RayPack::Mask mask) {
   if (vectorised(leaf)) {
     const auto rank = static_cast<std::int64_t>(rank_of(leaf.kind, leaf.order));
     const RayPack::Mask better = improve_pack(context_.scene, leaf, rank, pack_, mask);
-    count_tests(leaf, mask, better);
-    for (RayPack::Mask left = better; left != 0; left &= left - 1) pack_.leaf[std::countr_zero(left)] = id;
+    counter_.add_tests(leaf, mask, better);
+    for (RayPack::Mask left = better; left != 0; left &= left - 1) {
+      pack_.leaf[std::countr_zero(left)] = id;
+      pack_.flag[std::countr_zero(left)] = EnterFlag::kUnset;
+    }
+    found_ |= better;
+    return better;
+  }
+  if (csg_in_packs(leaf, mask)) {
+    const RayPack::Mask better = csg_.improve(leaf, pack_, mask);
     found_ |= better;
     return better;
   }
@@ -99,8 +91,7 @@ RayPack::Mask PackTracer::improve(LeafId id, RayPack::Mask mask) {
       pack_.leaf[i] = kInAnswer;
       better |= RayPack::Mask{1} << i;
     }
-    tests_[i] += context_.tests - tests;
-    bounds_tests_[i] += context_.bounds_tests - bounds_tests;
+    counter_.add_to_ray(i, context_.tests - tests, context_.bounds_tests - bounds_tests);
   }
   found_ |= better;
   return better;
@@ -110,8 +101,8 @@ void PackTracer::answer_nearest() {
   for (int k = 0; k < pack_.count; ++k) {
     const auto i = static_cast<std::size_t>(k);
     NearestAnswer& answer = answers_[places_[i]];
-    answer.tests = tests_[i];
-    answer.bounds_tests = bounds_tests_[i];
+    answer.tests = counter_.tests(i);
+    answer.bounds_tests = counter_.bounds_tests(i);
     answer.found = false;
     if ((found_ >> i & 1) == 0) continue;
     const auto rank = static_cast<std::uint64_t>(pack_.rank[i]);
@@ -121,7 +112,7 @@ void PackTracer::answer_nearest() {
     Hit& hit = answer.hit;
     hit.shape = {pack_.t[i], pack_.a[i], pack_.b[i], static_cast<std::uint32_t>(pack_.part[i])};
     hit.leaf = pack_.leaf[i];
-    hit.flag = EnterFlag::kUnset;
+    hit.flag = pack_.flag[i];
     hit.rank = rank;
     hit.instances.count = 0;
   }
@@ -142,17 +133,17 @@ RayPack::Mask PackTracer::occluded_by(LeafId id, const Leaf& leaf, Opacity opaci
   if (mask == 0) return 0;
   if (vectorised(leaf)) {
     const RayPack::Mask stopped = occlude_pack(context_.scene, leaf, pack_, mask);
-    count_tests(leaf, mask, stopped);
+    counter_.add_tests(leaf, mask, stopped);
     return stopped;
   }
+  if (csg_in_packs(leaf, mask)) return csg_.occlude(leaf, pack_, mask);
   RayPack::Mask stopped = 0;
   for (RayPack::Mask left = mask; left != 0; left &= left - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(left));
     const OcclusionQuery& query = occlusion_[places_[i]];
     const std::uint32_t tests = context_.tests, bounds_tests = context_.bounds_tests;
     if (leaf_occludes(context_, id, query.ray, query.lo, query.hi, opacity)) stopped |= RayPack::Mask{1} << i;
-    tests_[i] += context_.tests - tests;
-    bounds_tests_[i] += context_.bounds_tests - bounds_tests;
+    counter_.add_to_ray(i, context_.tests - tests, context_.bounds_tests - bounds_tests);
   }
   return stopped;
 }
@@ -160,7 +151,8 @@ RayPack::Mask PackTracer::occluded_by(LeafId id, const Leaf& leaf, Opacity opaci
 void PackTracer::answer_occluded(std::span<OcclusionAnswer> answers) const {
   for (int k = 0; k < pack_.count; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    answers[places_[i]] = {(stopped_ >> i & 1) != 0, (others_ >> i & 1) != 0, tests_[i], bounds_tests_[i]};
+    answers[places_[i]] = {(stopped_ >> i & 1) != 0, (others_ >> i & 1) != 0, counter_.tests(i),
+                           counter_.bounds_tests(i)};
   }
 }
 

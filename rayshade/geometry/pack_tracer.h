@@ -6,7 +6,9 @@
 #include <array>
 #include <span>
 
+#include "rayshade/geometry/csg_pack.h"
 #include "rayshade/geometry/intersector.h"
+#include "rayshade/geometry/pack_counter.h"
 #include "rayshade/geometry/ray_pack.h"
 #include "rayshade/geometry/trace_context.h"
 
@@ -20,7 +22,8 @@ class PackTracer {
   /// Fewer rays than this are not worth a pack.
   static constexpr int kFewest = 4;
 
-  PackTracer(const CompiledScene& scene, TraceScratch& scratch) : context_(scene, scratch) {}
+  PackTracer(const CompiledScene& scene, TraceScratch& scratch)
+      : context_(scene, scratch), counter_(context_), csg_(scene, scratch, counter_) {}
 
   /// Loads queries (at most RayPack::kMost) that all ask for leaves of the same opacity. `places`: their
   /// numbers in `queries`, or null for the first `count`.
@@ -41,7 +44,7 @@ class PackTracer {
   const RayPack& pack() const { return pack_; }
   Opacity opacity() const { return opacity_; }
   /// Counts a test of a box or of a block of candidates for every ray of the mask.
-  void count_bounds(RayPack::Mask mask);
+  void count_bounds(RayPack::Mask mask) { counter_.add_bounds(mask); }
 
  private:
   static constexpr std::uint32_t kInAnswer = kNone;  ///< the whole hit stands in the answer
@@ -51,11 +54,16 @@ class PackTracer {
   bool vectorised(const Leaf& leaf) const {
     return has_vector_test(leaf.kind) && !leaf.animated && (all_unit_ || leaf.kind != LeafKind::kSphere);
   }
-  void count_tests(const Leaf& leaf, RayPack::Mask tested, RayPack::Mask hit);
+  bool csg_in_packs(const Leaf& leaf, RayPack::Mask mask) const {
+    return leaf.kind == LeafKind::kCsg && all_unit_ && context_.scene.csgs[leaf.shape].in_packs &&
+           std::popcount(mask) >= kFewest;
+  }
   /// Those of `mask` that meet the leaf between lo and hi, as far as it is within `opacity`.
   RayPack::Mask occluded_by(LeafId id, const Leaf& leaf, Opacity opacity, RayPack::Mask mask);
 
   TraceContext context_;
+  PackCounter counter_;
+  CsgPack csg_;
   RayPack pack_;
   RayPack::Mask found_ = 0;                 ///< nearest queries
   RayPack::Mask stopped_ = 0, others_ = 0;  ///< occlusion queries
@@ -65,7 +73,6 @@ class PackTracer {
   NearestAnswer* answers_ = nullptr;
   const OcclusionQuery* occlusion_ = nullptr;
   std::array<std::uint32_t, RayPack::kMost> places_;
-  std::array<std::uint32_t, RayPack::kMost> tests_, bounds_tests_;
 };
 
 }  // namespace rayshade

@@ -26,6 +26,7 @@ struct RayPack {
   alignas(64) double a[kMost], b[kMost];
   alignas(64) double part[kMost];  ///< ShapeHit::part
   std::uint32_t leaf[kMost];
+  EnterFlag flag[kMost];
 
   Mask all() const { return count == kMost ? ~Mask{0} : (Mask{1} << count) - 1; }
 };
@@ -51,7 +52,7 @@ constexpr bool has_vector_test(LeafKind kind) {
 
 /// Tests a leaf that has_vector_test and is not animated against the rays of `mask`, whose directions are of
 /// unit length as far as the renderer knows (Ray::unit). Those for which it is the better hit by (t, rank)
-/// get its t, rank, a, b and part; returns which. `leaf[]` is left to the caller.
+/// get its t, rank, a, b and part; returns which. `leaf[]` and `flag[]` are left to the caller.
 RayPack::Mask improve_pack(const CompiledScene& scene, const Leaf& leaf, std::int64_t rank, RayPack& pack,
                            RayPack::Mask mask);
 /// Which rays of `mask` the leaf stops between lo and t (before the far limit in the sense of its kind).

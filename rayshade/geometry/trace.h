@@ -61,6 +61,8 @@ class QueryOwners {
   virtual RayOwner owner(std::size_t query) const = 0;
 };
 
+struct CsgRoom;
+
 /// What one thread owns while tracing.
 struct TraceScratch {
   MotionCache motion;
@@ -68,6 +70,7 @@ struct TraceScratch {
   bool brute_force = false;                 ///< loop over all leaves, ignore hierarchies
   std::unique_ptr<fas::ThreadState> trees;  ///< what this thread remembers of the trees of an intersector
   std::shared_ptr<void> batch;              ///< room of an intersector to sort spans in
+  std::shared_ptr<CsgRoom> csg;             ///< for CSG in packs (csg_pack.h)
   const QueryOwners* owners = nullptr;      ///< of the span at hand; null: unknown
 };
 

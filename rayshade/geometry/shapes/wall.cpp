@@ -83,7 +83,15 @@ SurfacePoint Wall::surface_point(const Ray& ray, const ShapeHit& hit) const {
 }
 
 bool Wall::entering(const Ray& ray, const ShapeHit& hit) const {
-  return dot(surface_point(ray, hit).geometric_normal, ray.direction) < 0;
+  // The sign of the normal of surface_point() along the ray, times the distance from the axis.
+  const Vec3 q = ray.at(hit.t) - origin_;
+  const Vec3& axis = frame_.rows[2];
+  const double z = dot(q, axis), along = dot(axis, ray.direction);
+  const Vec3 radial = q - z * axis;
+  const double distance = rayshade::length(radial);
+  if (!(distance > 0)) return -sine_ * along < 0;
+  const double nappe = radius_at(z) < 0 ? -1 : 1;
+  return nappe * cosine_ * dot(radial, ray.direction) - sine_ * along * distance < 0;
 }
 
 Bounds3 Wall::bounds() const {

@@ -87,7 +87,7 @@ struct World {
   /// Whether the traversal of a ray from a cut comes by a box.
   bool comes_by(const double* o, const double* d, const Cut& cut, std::uint32_t box) const {
     BoxProbe probe;
-    if (!make_probe(hierarchy->clip_box(), 1, o, d, 0, kFar, probe) || !probe.usable) return false;
+    if (!make_probe(hierarchy->clip_box(), 1, ClipRay(o, d), 0, kFar, probe) || !probe.usable) return false;
     bool found = false;
     std::uint32_t tests = 0;
     traverse(

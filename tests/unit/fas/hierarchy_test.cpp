@@ -93,7 +93,7 @@ TEST_P(WalkTest, VisitsWhatTheScalarTwinVisitsInTheSameOrder) {
       double o[3], d[3], t = 0;
       aim(dice, boxes[static_cast<std::size_t>(dice.below(static_cast<int>(boxes.size())))], o, d, t);
       BoxProbe probe;
-      if (!make_probe(built.hierarchy.clip_box(), 1, o, d, 0, kFar, probe)) continue;
+      if (!make_probe(built.hierarchy.clip_box(), 1, ClipRay(o, d), 0, kFar, probe)) continue;
       const float far = probe.limit(dice.below(2) ? kFar : t * dice.uniform(0, 2));
       const auto mask = static_cast<std::uint8_t>(1 + dice.below(3));
       std::uint32_t tests = 0, scalar_tests = 0;
@@ -130,9 +130,9 @@ TEST(Hierarchy, IsConservative) {
       const auto at = static_cast<std::uint32_t>(dice.below(static_cast<int>(boxes.size())));
       double o[3], d[3], t = 0;
       aim(dice, boxes[at], o, d, t);
-      ASSERT_TRUE(may_meet(ClipBox(boxes[at]), 1, o, d, 0, t));
+      ASSERT_TRUE(may_meet(ClipBox(boxes[at]), 1, ClipRay(o, d), 0, t));
       BoxProbe probe;
-      ASSERT_TRUE(make_probe(built.hierarchy.clip_box(), 1, o, d, 0, kFar, probe));
+      ASSERT_TRUE(make_probe(built.hierarchy.clip_box(), 1, ClipRay(o, d), 0, kFar, probe));
       ASSERT_TRUE(probe.usable);
       bool found = false;
       std::uint32_t tests = 0;

@@ -65,6 +65,50 @@ TEST(Compile, ObjectsUsedAgainAreSharedUnlessTheyAreOnePrimitive) {
   EXPECT_EQ(answer.hit.instances.count, 1u);
 }
 
+/// As long as their boxes remain boxes, or as they are CSG, which is one leaf with one box.
+TEST(Compile, SmallObjectsUsedAgainAreCopied) {
+  SceneBuilder b;
+  const auto pair = b.name(b.list({b.sphere(1, {0, 0, 0}), b.sphere(1, {0, 3, 0})}));
+  const auto hollow = b.name(b.difference({b.box({-1, -1, -1}, {1, 1, 1}), b.sphere(.9, {0, 0, .5})}));
+  const auto large = b.name(b.list({b.object(pair), b.object(hollow), b.sphere(9, {0, 0, -20})}));
+  b.show(b.object(pair));
+  b.show(b.moved(b.object(pair), then(scaling({1, -2, 3}), translation({10, 0, 0}))));
+  b.show(b.moved(b.object(pair), then(test::about({0, 0, 1}, 90), translation({20, 0, 0}))));
+  b.show(b.moved(b.object(pair), then(test::about({0, 0, 1}, 30), translation({30, 0, 0}))));
+  b.show(b.moved(b.object(hollow), then(test::about({0, 0, 1}, 30), translation({40, 0, 0}))));
+  b.show(b.moved(b.object(large), translation({50, 0, 0})));
+  b.show(b.moved(b.object(large), translation({70, 0, 0})));
+  const auto copied = b.compile(CompileOptions{}), few = b.compile(test::at_most_copies(9)),
+             shared = b.compile();
+  EXPECT_EQ(copied->counts.shared_groups, 1u);  // at 30 degrees
+  EXPECT_EQ(copied->instances.size(), 1u);
+  EXPECT_EQ(few->counts.shared_groups, 2u);  // five of two primitives, and two of five
+  EXPECT_EQ(shared->counts.shared_groups, 3u);
+  EXPECT_EQ(copied->groups[0].order_span, 17u);
+  EXPECT_EQ(shared->groups[0].order_span, 17u);
+  test::Dice dice(5);
+  TraceScratch scratch, other;
+  int hits = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 origin = Vec3{40, 0, 0} + 80 * dice.direction();
+    const Vec3 target{dice.uniform(-2, 80), dice.uniform(-3, 4), dice.uniform(-3, 3)};
+    const Ray ray{origin, normalize(target - origin)};
+    const NearestAnswer truth = trace(*shared, ray);
+    for (const CompiledScene* scene : {copied.get(), few.get()}) {
+      const NearestAnswer answer = trace(*scene, ray);
+      ASSERT_EQ(answer.found, truth.found);
+      if (!truth.found) continue;
+      ++hits;
+      EXPECT_NEAR(answer.hit.t(), truth.hit.t(), 1e-11);
+      const WorldHit p = resolve_world(*scene, answer.hit, ray, scratch),
+                     q = resolve_world(*shared, truth.hit, ray, other);
+      EXPECT_LT(length(p.normal - q.normal), 1e-9);
+      EXPECT_EQ(p.entering, q.entering);
+    }
+  }
+  EXPECT_GT(hits, 500);
+}
+
 /// The same scene written with shared objects and written out gives the same hits, normals and surfaces.
 TEST(Compile, SharedAndWrittenOutAreTheSame) {
   const auto make = [](SceneBuilder& b, int copies) {
@@ -287,6 +331,7 @@ TEST(Compile, DoublingTakesNoTimeAndMemory) {
   EXPECT_EQ(scene->counts.primitives, std::uint64_t{1} << 32);
   EXPECT_EQ(scene->groups[0].order_span, std::uint64_t{1} << 32);
   EXPECT_LT(scene->counts.bytes, 100'000u);
+  EXPECT_LT(b->compile(CompileOptions{})->counts.bytes, 2'000'000u);
   TraceScratch scratch;
   const NearestAnswer answer = test::nearest(*make_hierarchy(*scene), {{1234567, 0, 9}, {0, 0, -1}}, scratch);
   ASSERT_TRUE(answer.found);

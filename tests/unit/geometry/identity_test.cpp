@@ -64,6 +64,7 @@ class Trial {
     }
     CompileOptions compile;
     compile.shutter = {0, 1};
+    if (seed % 2 == 0) compile.most_copies = 0;
     scene_ = random_.b.compile(compile);
     options_.eye =
         seed % 4 == 1 ? spread() : RayClass{RayClass::Kind::kPoint, outward_.point(viewpoint()), {}};

@@ -15,6 +15,13 @@
 
 namespace rayshade::test {
 
+/// With so many primitives at most in copies of an object.
+inline CompileOptions at_most_copies(std::uint64_t copies) {
+  CompileOptions options;
+  options.most_copies = copies;
+  return options;
+}
+
 class SceneBuilder {
  public:
   Scene scene;
@@ -149,7 +156,8 @@ class SceneBuilder {
   void show(NodeId node) { scene.world.push_back(node); }
 
   MemoryProvider files;
-  std::unique_ptr<CompiledScene> compile(CompileOptions options = {}) {
+  /// Objects used several times are instances, unless `options` say otherwise: there are not many in a test.
+  std::unique_ptr<CompiledScene> compile(const CompileOptions& options = at_most_copies(0)) {
     return compile_scene(scene, files, options);
   }
 
