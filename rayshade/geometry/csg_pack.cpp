@@ -188,7 +188,7 @@ void CsgPack::search(CsgSide& side, const Group& group, Mask mask, std::size_t d
     Mask met = mask;
     if (!group.few_simple && mask != 0) {
       counter_.add_bounds(mask);
-      met = group.bounds.empty() ? 0 : clip_pack(group.bounds, group.condition, pack, mask);
+      met = group.bounds.empty() ? 0 : clip_pack(group.bounds, group.condition, *rays_, pack, mask);
     }
     found |= test_leaves(bounded, group.first + group.count, pack, met, depth);
   }

@@ -42,7 +42,7 @@ class CsgPack {
       : scene_(scene), scratch_(scratch), counter_(counter) {}
 
   /// For new rays, all of unit direction as far as the renderer knows (Ray::unit).
-  void load(const RayPack& rays) {
+  void load(RayPack& rays) {
     rays_ = &rays;
     loaded_ = false;
   }
@@ -66,7 +66,7 @@ class CsgPack {
   const CompiledScene& scene_;
   TraceScratch& scratch_;
   PackCounter& counter_;
-  const RayPack* rays_ = nullptr;
+  RayPack* rays_ = nullptr;
   bool loaded_ = false;  ///< into the room
 };
 

@@ -129,15 +129,12 @@ class GroupIntersector : public Intersector {
   RayPack::Mask near_world(PackTracer& tracer, RayPack::Mask mask) const {
     const Group& world = scene_.groups[0];
     if (world.count - world.unbounded < kWorthAWorldBox) return mask;
-    tracer.count_bounds(mask);
-    return world.bounds.empty() ? 0 : clip_pack(world.bounds, world.condition, tracer.pack(), mask);
+    return tracer.near_box(world.bounds, world.condition, mask);
   }
 
   RayPack::Mask near_box(PackTracer& tracer, std::size_t place, RayPack::Mask mask) const {
     const Bounds3& box = boxes_[place];
-    if (mask == 0 || box.unbounded()) return mask;
-    tracer.count_bounds(mask);
-    return box.empty() ? 0 : clip_pack(box, scene_.groups[0].condition, tracer.pack(), mask);
+    return box.unbounded() ? mask : tracer.near_box(box, scene_.groups[0].condition, mask);
   }
 
   void nearest_in_pack(PackTracer& tracer) const {

@@ -14,11 +14,12 @@ class PackCounter {
  public:
   explicit PackCounter(TraceContext& context) : context_(context) {}
 
-  /// For a new pack of so many rays.
-  void reset(int rays) {
-    rays_ = static_cast<std::size_t>(rays);
-    tests_.fill(0);
-    bounds_tests_.fill(0);
+  /// For a new pack of rays.
+  void reset(const RayPack& pack) {
+    rays_ = static_cast<std::size_t>(pack.count);
+    all_ = pack.all();
+    tests_ = {};
+    bounds_tests_ = {};
   }
   /// A test of a box or of a block of candidates for every ray of the mask.
   void add_bounds(RayPack::Mask mask) {
@@ -35,22 +36,33 @@ class PackCounter {
   }
   /// What one ray was tested with on its own, beside the pack.
   void add_to_ray(std::size_t ray, std::uint32_t tests, std::uint32_t bounds_tests) {
-    tests_[ray] += tests;
-    bounds_tests_[ray] += bounds_tests;
+    tests_.of_ray[ray] += tests;
+    bounds_tests_.of_ray[ray] += bounds_tests;
   }
-  std::uint32_t tests(std::size_t ray) const { return tests_[ray]; }
-  std::uint32_t bounds_tests(std::size_t ray) const { return bounds_tests_[ray]; }
+  std::uint32_t tests(std::size_t ray) const { return tests_.of_all + tests_.of_ray[ray]; }
+  std::uint32_t bounds_tests(std::size_t ray) const {
+    return bounds_tests_.of_all + bounds_tests_.of_ray[ray];
+  }
 
  private:
-  using Counts = std::array<std::uint32_t, RayPack::kMost>;
+  /// Most tests are of all rays.
+  struct Counts {
+    std::uint32_t of_all = 0;
+    std::array<std::uint32_t, RayPack::kMost> of_ray{};
+  };
 
   void add_one(Counts& counts, RayPack::Mask mask) const {
-    for (std::size_t i = 0; i < rays_; ++i) counts[i] += static_cast<std::uint32_t>(mask >> i & 1);
+    if (mask == all_) {
+      ++counts.of_all;
+      return;
+    }
+    for (std::size_t i = 0; i < rays_; ++i) counts.of_ray[i] += static_cast<std::uint32_t>(mask >> i & 1);
   }
 
   TraceContext& context_;
   std::size_t rays_ = 0;
-  Counts tests_{}, bounds_tests_{};
+  RayPack::Mask all_ = 0;
+  Counts tests_, bounds_tests_;
 };
 
 }  // namespace rayshade

@@ -27,6 +27,7 @@ void PackTracer::load_ray(const Query& query, int i) {
 void PackTracer::load(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
                       const std::uint32_t* places, int count) {
   pack_.count = count;
+  pack_.clip_ready = false;
   found_ = 0;
   all_unit_ = true;
   nearest_ = queries.data();
@@ -38,12 +39,13 @@ void PackTracer::load(std::span<const NearestQuery> queries, std::span<NearestAn
     pack_.rank[i] = kNoRank;
   }
   opacity_ = queries[places_[0]].mask;
-  counter_.reset(count);
+  counter_.reset(pack_);
   csg_.load(pack_);
 }
 
 void PackTracer::load(std::span<const OcclusionQuery> queries, const std::uint32_t* places, int count) {
   pack_.count = count;
+  pack_.clip_ready = false;
   stopped_ = others_ = 0;
   all_unit_ = true;
   occlusion_ = queries.data();
@@ -53,7 +55,7 @@ void PackTracer::load(std::span<const OcclusionQuery> queries, const std::uint32
     load_ray(queries[place], i);
   }
   opacity_ = queries[places_[0]].mask;
-  counter_.reset(count);
+  counter_.reset(pack_);
   csg_.load(pack_);
 }
 

@@ -41,6 +41,12 @@ class PackTracer {
   /// Writes the answers of the occlusion queries loaded.
   void answer_occluded(std::span<OcclusionAnswer> answers) const;
 
+  /// Those of `mask` that may meet a box before their far limit or best hit.
+  RayPack::Mask near_box(const Bounds3& box, double condition, RayPack::Mask mask) {
+    if (mask == 0) return 0;
+    count_bounds(mask);
+    return box.empty() ? 0 : clip_pack(box, condition, pack_, pack_, mask);
+  }
   const RayPack& pack() const { return pack_; }
   Opacity opacity() const { return opacity_; }
   /// Counts a test of a box or of a block of candidates for every ray of the mask.

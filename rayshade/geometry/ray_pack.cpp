@@ -461,33 +461,39 @@ HWY_ATTR std::uint64_t occlude(const CompiledScene& scene, const Leaf& leaf, con
   });
 }
 
-HWY_ATTR std::uint64_t clip(const Bounds3& box, double condition, const RayPack& pack, std::uint64_t mask) {
+HWY_ATTR void prepare(RayPack& pack) {
+  const D d;
+  const std::size_t n = hn::Lanes(d);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(pack.count); i += n) {
+    V size = constant(0);
+    for (int axis = 0; axis < 3; ++axis) {
+      hn::Store(constant(1) / hn::Load(d, pack.direction[axis] + i), d, pack.inverse[axis] + i);
+      size = most(size, hn::Abs(hn::Load(d, pack.origin[axis] + i)));
+    }
+    hn::Store(size, d, pack.size + i);
+  }
+}
+
+/// fas::clip() for every lane.
+HWY_ATTR std::uint64_t clip(const Bounds3& box, double condition, const RayPack& rays, const RayPack& limits,
+                            std::uint64_t mask) {
   const D d;
   const std::size_t n = hn::Lanes(d);
   const std::uint64_t lanes = (std::uint64_t{1} << n) - 1;
   constexpr double kUnit = 64 * std::numeric_limits<double>::epsilon();
   const double extent = max_abs(box.lo) + max_abs(box.hi);
   std::uint64_t met = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(pack.count); i += n) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(rays.count); i += n) {
     const std::uint64_t wanted = mask >> i & lanes;
     if (wanted == 0) continue;
-    const V ox = hn::Load(d, pack.origin[0] + i), oy = hn::Load(d, pack.origin[1] + i),
-            oz = hn::Load(d, pack.origin[2] + i);
-    const V size = most(most(hn::Abs(ox), hn::Abs(oy)), hn::Abs(oz));
-    const V slack = constant(kUnit * condition) * (size + constant(extent));
-    V entry = hn::Load(d, pack.lo + i), exit = hn::Load(d, pack.t + i);
+    const V slack = constant(kUnit * condition) * (hn::Load(d, rays.size + i) + constant(extent));
+    V entry = hn::Load(d, limits.lo + i), exit = hn::Load(d, limits.t + i);
     for (int axis = 0; axis < 3; ++axis) {
-      const V o = hn::Load(d, pack.origin[axis] + i), dir = hn::Load(d, pack.direction[axis] + i);
-      const V a = constant(box.lo[axis]) - slack - o, b = constant(box.hi[axis]) + slack - o;
-      const M parallel = hn::Eq(dir, constant(0));
-      const V inverse = constant(1) / dir;
-      V near = least(a * inverse, b * inverse), far = most(a * inverse, b * inverse);
-      const M inside = hn::And(hn::Le(a, constant(0)), hn::Ge(b, constant(0)));
-      const V infinity = constant(std::numeric_limits<double>::infinity());
-      near = hn::IfThenElse(parallel, hn::IfThenElse(inside, hn::Neg(infinity), infinity), near);
-      far = hn::IfThenElse(parallel, infinity, far);
-      entry = most(entry, near);
-      exit = least(exit, far);
+      const V o = hn::Load(d, rays.origin[axis] + i), inverse = hn::Load(d, rays.inverse[axis] + i);
+      const V low = constant(box.lo[axis]) - slack - o, high = constant(box.hi[axis]) + slack - o;
+      const M forward = hn::Ge(hn::CopySign(constant(1), inverse), constant(0));
+      entry = most(entry, hn::IfThenElse(forward, low, high) * inverse);
+      exit = least(exit, hn::IfThenElse(forward, high, low) * inverse);
     }
     std::uint64_t bits = 0;
     const V room = constant(8 * std::numeric_limits<double>::epsilon()) * hn::Abs(exit);
@@ -508,6 +514,7 @@ namespace rayshade {
 namespace {
 constexpr auto kImprove = FAS_VERSIONS(improve);
 constexpr auto kOcclude = FAS_VERSIONS(occlude);
+constexpr auto kPrepare = FAS_VERSIONS(prepare);
 constexpr auto kClip = FAS_VERSIONS(clip);
 }  // namespace
 
@@ -521,8 +528,11 @@ RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const R
   return kOcclude.best()(scene, leaf, pack, mask);
 }
 
-RayPack::Mask clip_pack(const Bounds3& box, double condition, const RayPack& pack, RayPack::Mask mask) {
-  return kClip.best()(box, condition, pack, mask);
+RayPack::Mask clip_pack(const Bounds3& box, double condition, RayPack& rays, const RayPack& limits,
+                        RayPack::Mask mask) {
+  if (!rays.clip_ready) kPrepare.best()(rays);
+  rays.clip_ready = true;
+  return kClip.best()(box, condition, rays, limits, mask);
 }
 
 }  // namespace rayshade

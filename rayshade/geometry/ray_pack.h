@@ -20,6 +20,10 @@ struct RayPack {
   int count = 0;
   alignas(64) double origin[3][kMost];
   alignas(64) double direction[3][kMost];
+  // For clip_pack(), which finds them when it is first asked about new rays:
+  bool clip_ready = false;               ///< false: they are of other rays
+  alignas(64) double inverse[3][kMost];  ///< of the direction
+  alignas(64) double size[kMost];        ///< largest coordinate of the origin, without sign
   alignas(64) double lo[kMost];
   alignas(64) double t[kMost];           ///< far limit, or the best hit so far
   alignas(64) std::int64_t rank[kMost];  ///< of the best hit; a rank fits 63 bits
@@ -58,7 +62,9 @@ RayPack::Mask improve_pack(const CompiledScene& scene, const Leaf& leaf, std::in
 /// Which rays of `mask` the leaf stops between lo and t (before the far limit in the sense of its kind).
 RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack,
                            RayPack::Mask mask);
-/// Which rays of `mask` may meet the box within (lo, t), whatever the exact tests round (fas::may_meet).
-RayPack::Mask clip_pack(const Bounds3& box, double condition, const RayPack& pack, RayPack::Mask mask);
+/// Which rays of `mask` may meet the box, which is not empty, within (lo, t) of `limits`, whatever the exact
+/// tests round (fas::may_meet).
+RayPack::Mask clip_pack(const Bounds3& box, double condition, RayPack& rays, const RayPack& limits,
+                        RayPack::Mask mask);
 
 }  // namespace rayshade

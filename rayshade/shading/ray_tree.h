@@ -18,6 +18,7 @@
 #include "rayshade/scene/settings.h"
 #include "rayshade/shading/counts.h"
 #include "rayshade/shading/lights.h"
+#include "rayshade/shading/reused_list.h"
 #include "rayshade/texture/apply.h"
 
 namespace rayshade {
@@ -143,8 +144,8 @@ class RayTree {
   std::vector<NearestAnswer> nearest_answers_;
   std::vector<Shade> shades_;
   std::size_t shade_count_ = 0;
-  std::vector<PendingLight> lights_;
-  std::vector<OcclusionQuery> shadow_queries_;
+  ReusedList<PendingLight> lights_;
+  ReusedList<OcclusionQuery> shadow_queries_;
   std::vector<OcclusionAnswer> shadow_answers_;
   std::vector<std::uint32_t> shadow_owner_;  ///< index in lights_ of each shadow query
   bool any_highlight_ = false;               ///< among lights_

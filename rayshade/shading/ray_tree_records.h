@@ -59,14 +59,14 @@ struct RayTree::Shade {
 
 /// One light at one hit, waiting for its shadow.
 struct RayTree::PendingLight {
-  std::uint32_t shade = 0;
-  std::uint32_t light = 0;
-  double cosine = 0;
-  double highlight = 0;  ///< R.L; to be combined: to its exponent
-  Color color;           ///< before shadows; after them when answered
-  bool blocked = false;
-  bool skipped = false;     ///< has no effect; kept only for the observer
-  bool highlights = false;  ///< there is a highlight, if the light arrives
+  std::uint32_t shade;
+  std::uint32_t light;
+  double cosine;
+  double highlight;  ///< R.L; to be combined: to its exponent
+  Color color;       ///< before shadows; after them when answered
+  bool blocked;
+  bool skipped;     ///< has no effect; kept only for the observer
+  bool highlights;  ///< there is a highlight, if the light arrives
 };
 
 /// Tells for whom the queries of a span are, as long as it lives.

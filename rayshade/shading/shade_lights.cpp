@@ -82,12 +82,13 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
       }
       if (skipped && !observer_) continue;
       // Records are made where they stay: copies of fresh ones stall on their own stores.
-      PendingLight& pending = lights_.emplace_back();
+      PendingLight& pending = lights_.add();
       pending.shade = s;
       pending.light = static_cast<std::uint32_t>(l);
       pending.cosine = c;
       pending.highlight = highlight;
       pending.color = light_in.color;
+      pending.blocked = pending.highlights = false;
       pending.skipped = skipped;
       if (skipped) continue;
       pending.highlights = c > 0 ? answers_highlight && highlight > 0
@@ -107,10 +108,11 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
           direction = target / far;
         }
         const RayStart start = shade.starts.toward(direction, 1, true);
-        OcclusionQuery& query = shadow_queries_.emplace_back();
+        OcclusionQuery& query = shadow_queries_.add();
         query.ray.origin = start.origin;
         query.ray.direction = direction;
         query.ray.time = node.ray.time;
+        query.ray.unit = true;
         query.lo = start.lo;
         query.hi = far;
         query.mask = mask;
