@@ -54,12 +54,11 @@ void choose_csg_for_packs(CompiledScene& scene) {
 CsgLevel& CsgPack::level(std::size_t depth) {
   if (!scratch_.csg) scratch_.csg = std::make_shared<CsgRoom>();
   CsgRoom& room = *scratch_.csg;
-  if (!loaded_) ++room.loads;
-  loaded_ = true;
+  if (load_ == 0) load_ = ++room.loads;
   if (depth == room.levels.size()) room.levels.push_back(std::make_unique_for_overwrite<CsgLevel>());
   CsgLevel& level = *room.levels[depth];
-  if (level.rays == room.loads) return level;
-  level.rays = room.loads;
+  if (level.load == load_) return level;
+  level.load = load_;
   for (CsgSide& side : level.sides) {
     side.pack.count = rays_->count;
     for (std::size_t axis = 0; axis < 3; ++axis) {

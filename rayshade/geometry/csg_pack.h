@@ -23,7 +23,7 @@ struct CsgSide {
 /// One object within the others.
 struct CsgLevel {
   CsgSide sides[2];
-  std::size_t rays = 0;  ///< which load its packs have
+  std::size_t load = 0;  ///< number of that whose rays its packs have
   // The result:
   RayPack::Mask hit;
   RayPack::Mask second;  ///< it is the hit of sides[1]
@@ -44,7 +44,7 @@ class CsgPack {
   /// For new rays, all of unit direction as far as the renderer knows (Ray::unit).
   void load(RayPack& rays) {
     rays_ = &rays;
-    loaded_ = false;
+    load_ = 0;
   }
   /// Tests a CSG leaf (of the world, Csg::in_packs) against rays of those loaded: as improve_pack(), but
   /// fills leaf[] and flag[] as well.
@@ -67,7 +67,7 @@ class CsgPack {
   TraceScratch& scratch_;
   PackCounter& counter_;
   RayPack* rays_ = nullptr;
-  bool loaded_ = false;  ///< into the room
+  std::size_t load_ = 0;  ///< its number in the room; 0: not there yet
 };
 
 }  // namespace rayshade
