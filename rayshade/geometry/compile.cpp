@@ -23,6 +23,8 @@ constexpr int kMostRecursion = 400;
 constexpr std::size_t kLongestFold = 64;
 /// A named object is looked at this many levels deep for what really stands there.
 constexpr int kWrappings = 8;
+/// All copies of a scene have at most so many primitives: many objects may be used several times.
+constexpr std::uint64_t kCopiesOfAll = 65'536;
 /// CSG of so few primitives is one leaf without a hierarchy, whose box matters little.
 constexpr std::uint64_t kFewOperands = 16;
 /// Terms of a map this small beside others are from rounding: turns by 90 degrees have them.
@@ -51,13 +53,15 @@ class Compiler {
         pools_(scene, facts_, provider, options.flip_normals, out),
         placements_(scene, facts_, out),
         paths_(scene, facts_, out),
-        most_copies_(options.most_copies) {}
+        most_copies_(options.most_copies),
+        small_(scene.named_objects.size(), Small::kUnknown) {}
 
   void run();
 
  private:
   /// What the nodes around a node have decided so far.
   enum class Inherited : std::uint8_t { kNothing, kOpaqueSurface, kTransparentSurface };
+  enum class Small : std::uint8_t { kUnknown, kNo, kYes };
   struct Context {
     std::uint32_t path = kNone, placement = kNone;
     Inherited surface = Inherited::kNothing;
@@ -97,7 +101,8 @@ class Compiler {
   Leaf csg_leaf(NodeKind operation, std::uint32_t left, std::uint32_t right, const Context& inner);
   std::uint32_t shared_group(std::uint32_t object, bool transparent_outside, const Location& where,
                              int depth);
-  bool copied(std::uint32_t object, const Context& inner) const;
+  bool copied(std::uint32_t object, const Context& inner);
+  bool small(std::uint32_t object);
   const Node& innermost(NodeId id) const;
   std::uint32_t finish_group(Build&& build);
   void store_group(std::uint32_t index, Build&& build);
@@ -112,7 +117,8 @@ class Compiler {
   ShapePools pools_;
   PlacementTable placements_;
   PathTable paths_;
-  std::uint64_t most_copies_;
+  std::uint64_t most_copies_, copies_left_ = kCopiesOfAll;
+  std::vector<Small> small_;  ///< named objects that are to be copied
   std::vector<GroupFacts> group_facts_;
   std::unordered_map<std::uint64_t, std::uint32_t>
       shared_;  ///< 2 * named object + transparent_outside: group
@@ -307,13 +313,25 @@ Leaf Compiler::csg_leaf(NodeKind operation, std::uint32_t left, std::uint32_t ri
   return leaf;
 }
 
+/// Whether all copies of an object have few enough primitives; decided once, since it takes them from those
+/// of the whole scene.
+bool Compiler::small(std::uint32_t object) {
+  Small& known = small_[object];
+  if (known == Small::kUnknown) {
+    const std::uint64_t most = std::min(most_copies_, copies_left_), uses = facts_.uses(object);
+    const std::uint64_t primitives = facts_.primitives(scene_.named_objects[object].node);
+    known = primitives <= most / uses ? Small::kYes : Small::kNo;
+    if (known == Small::kYes) copies_left_ -= primitives * uses;
+  }
+  return known == Small::kYes;
+}
+
 /// Whether a named object itself stands at this place, not an instance of it.
-bool Compiler::copied(std::uint32_t object, const Context& inner) const {
+bool Compiler::copied(std::uint32_t object, const Context& inner) {
   const NodeId body = scene_.named_objects[object].node;
-  const std::uint64_t uses = facts_.uses(object);
   // One primitive: sharing it would save nothing.
-  if (uses <= 1 || is_primitive(innermost(body).kind)) return true;
-  if (facts_.primitives(body) > most_copies_ / uses) return false;
+  if (facts_.uses(object) <= 1 || is_primitive(innermost(body).kind)) return true;
+  if (!small(object)) return false;
   if (inner.placement == kNone) return true;
   const Placement& placement = out_.placements[inner.placement];
   return !placement.animated() && (keeps_boxes(placement.map.forward) ||

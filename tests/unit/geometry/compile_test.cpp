@@ -109,6 +109,20 @@ TEST(Compile, SmallObjectsUsedAgainAreCopied) {
   EXPECT_GT(hits, 500);
 }
 
+/// However many small objects there are, their copies stay few.
+TEST(Compile, CopiesOfAllObjectsAreLimited) {
+  SceneBuilder b;
+  for (int object = 0; object < 20; ++object) {
+    std::vector<NodeId> members;
+    for (int i = 0; i < 500; ++i) members.push_back(b.sphere(.1, {1.0 * i, 1.0 * object, 0}));
+    const auto name = b.name(b.list(members));
+    for (int use = 0; use < 8; ++use) b.show(b.moved(b.object(name), translation({0, 0, 1.0 * use})));
+  }
+  const auto scene = b.compile(CompileOptions{});
+  EXPECT_EQ(scene->counts.shared_groups, 4u);
+  EXPECT_EQ(scene->groups[0].count, 16u * 8 * 500 + 4u * 8);
+}
+
 /// The same scene written with shared objects and written out gives the same hits, normals and surfaces.
 TEST(Compile, SharedAndWrittenOutAreTheSame) {
   const auto make = [](SceneBuilder& b, int copies) {
