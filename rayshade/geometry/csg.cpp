@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Constructive solid geometry as objects.md 7 says, by nearest hits of the operands: U1/U2, I1/I2 and the two
-// branches of the difference. Works for lists as solids and for open operands as the original does, which
-// sorted intervals of closed solids would not.
+// Constructive solid geometry (objects.md 7) for one ray, by nearest hits of the operands.
 #include "rayshade/geometry/csg_steps.h"
 #include "rayshade/geometry/trace_context.h"
 
@@ -15,26 +13,53 @@ class CsgQuery {
 
   /// The hit, or nothing where there is none before the far limit. Its t may lie beyond it.
   const Hit* run(double lo) {
-    switch (csg_.operation) {
-      case NodeKind::kUnion:
-        return run_union(lo);
-      case NodeKind::kIntersect:
-        return run_intersection(lo);
-      default:
-        return run_difference(lo);
+    if (search(0, lo) || csg_.operation == NodeKind::kUnion) search(1, lo);
+    for (int step = 0; step < csg_steps::kMost; ++step) {
+      const csg_steps::Next next = csg_steps::next_step(csg_.operation, *this, hi_);
+      switch (next.what) {
+        case csg_steps::Next::What::kMiss:
+          return nullptr;
+        case csg_steps::Next::What::kHit:
+          result_enters_ = next.entering;
+          return &sides_[next.second].hit;
+        case csg_steps::Next::What::kSearch:
+          search_beyond(next.second, t(!next.second));
+      }
     }
+    return nullptr;
   }
   bool result_enters() const { return result_enters_; }
+
+  // For csg_steps::next_step().
+  bool found(std::size_t side) const { return sides_[side].found; }
+  double t(std::size_t side) const { return sides_[side].hit.shape.t; }
+  /// The entering property of objects.md 7.2.
+  bool enters(std::size_t side) const {
+    const Side& s = sides_[side];
+    if (s.hit.flag != EnterFlag::kUnset) return s.hit.flag == EnterFlag::kEntering;
+    const CompiledScene& scene = context_.scene;
+    const Leaf& leaf = scene.leaves[s.hit.leaf];
+    if (s.hit.instances.count == outer_instances_)
+      return primitive_enters(scene, leaf, ray_.in(context_, leaf), s.lo, s.hit.shape);
+    Ray local = ray_.ray();
+    const auto descend = [&](const Leaf& to) {
+      if (to.placement == kNone) return;
+      local = transformed(local, context_.placement_of(to.placement, to.animated, local.time).inverse);
+    };
+    for (std::uint32_t i = outer_instances_; i < s.hit.instances.count; ++i)
+      descend(scene.leaves[s.hit.instances.leaves[i]]);
+    descend(leaf);
+    return primitive_enters(scene, leaf, local, s.lo, s.hit.shape);
+  }
 
  private:
   struct Side {
     Hit hit;
     double lo = 0;  ///< with which it was found
     bool found = false;
-    double t() const { return hit.shape.t; }
   };
 
-  bool search(int side, double lo) {
+  bool search(std::size_t side, double lo) {
     Side& s = sides_[side];
     s.lo = lo;
     start_search(s.hit, kFar);
@@ -54,80 +79,9 @@ class CsgQuery {
     rounding_ = csg_steps::rounding(ray);
   }
 
-  /// next(X, t).
-  bool search_beyond(int side, double t) {
+  void search_beyond(std::size_t side, double t) {
     if (!(tolerance_ >= 0)) find_tolerances();
-    return search(side, csg_steps::beyond(t, tolerance_, rounding_));
-  }
-
-  /// The entering property of objects.md 7.2.
-  bool enters(int side) {
-    const Side& s = sides_[side];
-    if (s.hit.flag != EnterFlag::kUnset) return s.hit.flag == EnterFlag::kEntering;
-    const CompiledScene& scene = context_.scene;
-    const Leaf& leaf = scene.leaves[s.hit.leaf];
-    if (s.hit.instances.count == outer_instances_)
-      return primitive_enters(scene, leaf, ray_.in(context_, leaf), s.lo, s.hit.shape);
-    Ray local = ray_.ray();
-    const auto descend = [&](const Leaf& to) {
-      if (to.placement == kNone) return;
-      local = transformed(local, context_.placement_of(to.placement, to.animated, local.time).inverse);
-    };
-    for (std::uint32_t i = outer_instances_; i < s.hit.instances.count; ++i)
-      descend(scene.leaves[s.hit.instances.leaves[i]]);
-    descend(leaf);
-    return primitive_enters(scene, leaf, local, s.lo, s.hit.shape);
-  }
-
-  const Hit* result(int side, bool entering) {
-    result_enters_ = entering;
-    return &sides_[side].hit;
-  }
-
-  const Hit* run_union(double lo) {
-    search(0, lo);
-    search(1, lo);
-    if (!sides_[0].found && !sides_[1].found) return nullptr;
-    int near = sides_[0].found && !(sides_[1].found && sides_[1].t() < sides_[0].t()) ? 0 : 1;
-    for (int step = 0; step < csg_steps::kMost; ++step) {
-      const int far = 1 - near;
-      if (sides_[near].t() > hi_) return nullptr;
-      if (!sides_[far].found || enters(far)) return result(near, enters(near));
-      if (!search_beyond(near, sides_[far].t())) return result(far, false);
-      near = far;
-    }
-    return nullptr;
-  }
-
-  const Hit* run_intersection(double lo) {
-    if (!search(0, lo) || !search(1, lo)) return nullptr;
-    int near = sides_[1].t() < sides_[0].t() ? 1 : 0;
-    for (int step = 0; step < csg_steps::kMost; ++step) {
-      const int far = 1 - near;
-      if (sides_[near].t() > hi_) return nullptr;
-      if (!enters(far)) return result(near, enters(near));
-      if (!search_beyond(near, sides_[far].t())) return nullptr;
-      near = far;
-    }
-    return nullptr;
-  }
-
-  const Hit* run_difference(double lo) {
-    if (!search(0, lo)) return nullptr;
-    search(1, lo);
-    for (int step = 0; step < csg_steps::kMost; ++step) {
-      const Side &a = sides_[0], &b = sides_[1];
-      if (!b.found) return result(0, enters(0));
-      if (std::min(a.t(), b.t()) > hi_) return nullptr;
-      if (a.t() < b.t()) {
-        if (enters(1)) return result(0, enters(0));
-        if (!search_beyond(0, b.t())) return nullptr;
-      } else {
-        if (!enters(0)) return result(1, !enters(1));
-        search_beyond(1, a.t());
-      }
-    }
-    return nullptr;
+    search(side, csg_steps::beyond(t, tolerance_, rounding_));
   }
 
   TraceContext& context_;

@@ -46,8 +46,8 @@ class CsgPack {
     rays_ = &rays;
     load_ = 0;
   }
-  /// Tests a CSG leaf (of the world, Csg::in_packs) against rays of those loaded: as improve_pack(), but
-  /// fills leaf[] and flag[] as well.
+  /// Tests a CSG leaf (of the world, Csg::in_packs) against rays of those loaded, as improve_pack()
+  /// does.
   RayPack::Mask improve(const Leaf& leaf, RayPack& pack, RayPack::Mask mask) {
     return improve(leaf, pack, mask, 0);
   }
@@ -55,12 +55,14 @@ class CsgPack {
   RayPack::Mask occlude(const Leaf& leaf, const RayPack& pack, RayPack::Mask mask);
 
  private:
+  struct State;
+
   RayPack::Mask improve(const Leaf& leaf, RayPack& pack, RayPack::Mask mask, std::size_t depth);
   CsgLevel& level(std::size_t depth);
   const CsgLevel& run(const Csg& csg, const RayPack& pack, RayPack::Mask mask, std::size_t depth);
   void search(CsgSide& side, const Group& group, RayPack::Mask mask, std::size_t depth);
   RayPack::Mask test_leaves(LeafId first, LeafId last, RayPack& pack, RayPack::Mask mask, std::size_t depth);
-  bool enters(const CsgSide& side, std::size_t ray) const;
+  bool enters(const RayPack& hits, std::size_t ray) const;
   double beyond(const Csg& csg, std::size_t ray, double t) const;
 
   const CompiledScene& scene_;

@@ -140,8 +140,10 @@ void CompiledScene::rebuild(bool hierarchies) {
   for (const std::uint32_t group : bottom_up) rebuild_group(groups[group], hierarchies);
   scale = groups[0].bounds.largest_extent();
   if (!(scale > 0) || !std::isfinite(scale)) scale = 1;
-  if (has_csg) set_tolerances();
-  if (has_csg) choose_csg_for_packs(*this);
+  if (has_csg) {
+    set_tolerances();
+    choose_csg_for_packs(*this);
+  }
   measure_extents();
   count_bytes();
 }

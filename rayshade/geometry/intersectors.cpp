@@ -38,10 +38,7 @@ constexpr std::uint32_t kWorthAWorldBox = 6;
 bool traces_in_packs(const CompiledScene& scene) {
   const Group& world = scene.groups[0];
   const auto first = scene.leaves.begin() + world.first, last = first + world.count;
-  const auto slow = [&](const Leaf& leaf) {
-    if (leaf.kind == LeafKind::kCsg) return !scene.csgs[leaf.shape].in_packs;
-    return leaf.animated || !has_vector_test(leaf.kind);
-  };
+  const auto slow = [&](const Leaf& leaf) { return !tested_in_packs(scene, leaf); };
   return world.count <= kPackLeaves && std::count_if(first, last, slow) <= kSlowLeaves;
 }
 

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "rayshade/geometry/pack_tracer.h"
 
-#include <bit>
 #include <limits>
 
 #include "rayshade/geometry/rank.h"
 
 namespace rayshade {
-namespace {
-
-constexpr std::int64_t kNoRank = std::numeric_limits<std::int64_t>::max();
-
-}  // namespace
 
 template <class Query>
 void PackTracer::load_ray(const Query& query, int i) {
@@ -36,7 +30,7 @@ void PackTracer::load(std::span<const NearestQuery> queries, std::span<NearestAn
     const std::uint32_t place = places ? places[i] : static_cast<std::uint32_t>(i);
     places_[static_cast<std::size_t>(i)] = place;
     load_ray(queries[place], i);
-    pack_.rank[i] = kNoRank;
+    pack_.rank[i] = RayPack::kNoRank;
   }
   opacity_ = queries[places_[0]].mask;
   counter_.reset(pack_);
@@ -63,13 +57,8 @@ RayPack::Mask PackTracer::improve(LeafId id, RayPack::Mask mask) {
   const Leaf& leaf = context_.scene.leaves[id];
   if ((leaf.opacity & opacity_) == 0) return 0;
   if (vectorised(leaf)) {
-    const auto rank = static_cast<std::int64_t>(rank_of(leaf.kind, leaf.order));
-    const RayPack::Mask better = improve_pack(context_.scene, leaf, rank, pack_, mask);
+    const RayPack::Mask better = improve_pack(context_.scene, id, pack_, mask);
     counter_.add_tests(leaf, mask, better);
-    for (RayPack::Mask left = better; left != 0; left &= left - 1) {
-      pack_.leaf[std::countr_zero(left)] = id;
-      pack_.flag[std::countr_zero(left)] = EnterFlag::kUnset;
-    }
     found_ |= better;
     return better;
   }
@@ -79,13 +68,12 @@ RayPack::Mask PackTracer::improve(LeafId id, RayPack::Mask mask) {
     return better;
   }
   RayPack::Mask better = 0;
-  for (RayPack::Mask left = mask; left != 0; left &= left - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+  for_each_ray(mask, [&](std::size_t i) {
     const NearestQuery& query = nearest_[places_[i]];
     Hit& hit = answers_[places_[i]].hit;
     hit.shape.t = pack_.t[i];
-    hit.rank = pack_.rank[i] == kNoRank ? std::numeric_limits<std::uint64_t>::max()
-                                        : static_cast<std::uint64_t>(pack_.rank[i]);
+    hit.rank = pack_.rank[i] == RayPack::kNoRank ? std::numeric_limits<std::uint64_t>::max()
+                                                 : static_cast<std::uint64_t>(pack_.rank[i]);
     const std::uint32_t tests = context_.tests, bounds_tests = context_.bounds_tests;
     if (improve_by_leaf(context_, id, query.ray, query.lo, query.mask, 0, hit)) {
       pack_.t[i] = hit.shape.t;
@@ -94,7 +82,7 @@ RayPack::Mask PackTracer::improve(LeafId id, RayPack::Mask mask) {
       better |= RayPack::Mask{1} << i;
     }
     counter_.add_to_ray(i, context_.tests - tests, context_.bounds_tests - bounds_tests);
-  }
+  });
   found_ |= better;
   return better;
 }
@@ -140,13 +128,12 @@ RayPack::Mask PackTracer::occluded_by(LeafId id, const Leaf& leaf, Opacity opaci
   }
   if (csg_in_packs(leaf, mask)) return csg_.occlude(leaf, pack_, mask);
   RayPack::Mask stopped = 0;
-  for (RayPack::Mask left = mask; left != 0; left &= left - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+  for_each_ray(mask, [&](std::size_t i) {
     const OcclusionQuery& query = occlusion_[places_[i]];
     const std::uint32_t tests = context_.tests, bounds_tests = context_.bounds_tests;
     if (leaf_occludes(context_, id, query.ray, query.lo, query.hi, opacity)) stopped |= RayPack::Mask{1} << i;
     counter_.add_to_ray(i, context_.tests - tests, context_.bounds_tests - bounds_tests);
-  }
+  });
   return stopped;
 }
 

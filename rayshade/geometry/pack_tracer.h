@@ -58,10 +58,11 @@ class PackTracer {
   template <class Query>
   void load_ray(const Query& query, int i);
   bool vectorised(const Leaf& leaf) const {
-    return has_vector_test(leaf.kind) && !leaf.animated && (all_unit_ || leaf.kind != LeafKind::kSphere);
+    return leaf.kind != LeafKind::kCsg && tested_in_packs(context_.scene, leaf) &&
+           (all_unit_ || leaf.kind != LeafKind::kSphere);
   }
   bool csg_in_packs(const Leaf& leaf, RayPack::Mask mask) const {
-    return leaf.kind == LeafKind::kCsg && all_unit_ && context_.scene.csgs[leaf.shape].in_packs &&
+    return leaf.kind == LeafKind::kCsg && tested_in_packs(context_.scene, leaf) && all_unit_ &&
            std::popcount(mask) >= kFewest;
   }
   /// Those of `mask` that meet the leaf between lo and hi, as far as it is within `opacity`.

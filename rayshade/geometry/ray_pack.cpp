@@ -518,9 +518,15 @@ constexpr auto kPrepare = FAS_VERSIONS(prepare);
 constexpr auto kClip = FAS_VERSIONS(clip);
 }  // namespace
 
-RayPack::Mask improve_pack(const CompiledScene& scene, const Leaf& leaf, std::int64_t rank, RayPack& pack,
-                           RayPack::Mask mask) {
-  return kImprove.best()(scene, leaf, rank, pack, mask);
+RayPack::Mask improve_pack(const CompiledScene& scene, LeafId id, RayPack& pack, RayPack::Mask mask) {
+  const Leaf& leaf = scene.leaves[id];
+  const auto rank = static_cast<std::int64_t>(rank_of(leaf.kind, leaf.order));
+  const RayPack::Mask better = kImprove.best()(scene, leaf, rank, pack, mask);
+  for_each_ray(better, [&](std::size_t i) {
+    pack.leaf[i] = id;
+    pack.flag[i] = EnterFlag::kUnset;
+  });
+  return better;
 }
 
 RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack,

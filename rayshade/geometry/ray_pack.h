@@ -7,7 +7,9 @@
 // hand.
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <limits>
 
 #include "rayshade/geometry/compiled_scene.h"
 
@@ -16,6 +18,7 @@ namespace rayshade {
 struct RayPack {
   static constexpr int kMost = 64;
   using Mask = std::uint64_t;  ///< bit i: ray i
+  static constexpr std::int64_t kNoRank = std::numeric_limits<std::int64_t>::max();
 
   int count = 0;
   alignas(64) double origin[3][kMost];
@@ -34,6 +37,12 @@ struct RayPack {
 
   Mask all() const { return count == kMost ? ~Mask{0} : (Mask{1} << count) - 1; }
 };
+
+/// Calls `f` with the number of every ray of a mask.
+template <class F>
+void for_each_ray(RayPack::Mask mask, const F& f) {
+  for (; mask != 0; mask &= mask - 1) f(static_cast<std::size_t>(std::countr_zero(mask)));
+}
 
 /// Whether leaves of this kind have a vector test.
 constexpr bool has_vector_test(LeafKind kind) {
@@ -54,11 +63,16 @@ constexpr bool has_vector_test(LeafKind kind) {
   }
 }
 
+/// Whether a leaf is tested many rays at once: it has a vector test and stands still, or is CSG of such.
+inline bool tested_in_packs(const CompiledScene& scene, const Leaf& leaf) {
+  return leaf.kind == LeafKind::kCsg ? scene.csgs[leaf.shape].in_packs
+                                     : has_vector_test(leaf.kind) && !leaf.animated;
+}
+
 /// Tests a leaf that has_vector_test and is not animated against the rays of `mask`, whose directions are of
 /// unit length as far as the renderer knows (Ray::unit). Those for which it is the better hit by (t, rank)
-/// get its t, rank, a, b and part; returns which. `leaf[]` and `flag[]` are left to the caller.
-RayPack::Mask improve_pack(const CompiledScene& scene, const Leaf& leaf, std::int64_t rank, RayPack& pack,
-                           RayPack::Mask mask);
+/// get it; returns which.
+RayPack::Mask improve_pack(const CompiledScene& scene, LeafId id, RayPack& pack, RayPack::Mask mask);
 /// Which rays of `mask` the leaf stops between lo and t (before the far limit in the sense of its kind).
 RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack,
                            RayPack::Mask mask);
