@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,12 @@ namespace fas {
 
 /// The part of a ray inside the box of a structure, made ready for single precision.
 struct BoxProbe {
+  /// What exact tests may be off by, relative to the coordinates at hand and the condition.
+  static constexpr double kUnit = 64 * std::numeric_limits<double>::epsilon();
+  /// Components of a direction below this share of the largest are taken for it: over the extent of a
+  /// structure the difference is far below the slack.
+  static constexpr double kLeastComponent = 1e-18;
+
   float near_origin[3], far_origin[3], inverse[3];
   std::uint8_t near_side[3];  ///< 0: the low plane comes first
   bool usable = false;        ///< false: numbers out of range; test everything

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fas/hierarchy.h"
 
 namespace fas {
 namespace {
-
-constexpr double kUnit = 64 * std::numeric_limits<double>::epsilon();
-/// Components of a direction below this share of the largest are taken for it: over the extent of a structure
-/// the difference is far below the slack.
-constexpr double kLeastComponent = 1e-18;
 
 double largest_of(const Point& v) { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
 
@@ -37,7 +31,8 @@ bool make_probe(const ClipBox& box, double condition, const ClipRay& ray, double
     start[i] = ray.origin[i] + probe.entry * ray.direction[i] - box.center[i];
     far = std::max(far, std::fabs(start[i]));
   }
-  const double slack = 0x1p-21 * (far + box.extent) + exact + kUnit * std::fabs(probe.entry) * largest;
+  const double slack =
+      0x1p-21 * (far + box.extent) + exact + BoxProbe::kUnit * std::fabs(probe.entry) * largest;
   probe.usable = largest > 1e-280 && largest < 1e280 && slack < 1e30 && far < 1e30;
   if (!probe.usable) return true;
   probe.scale = largest;
@@ -47,8 +42,9 @@ bool make_probe(const ClipBox& box, double condition, const ClipRay& ray, double
     probe.near_side[i] = ray.near_side[i];
     probe.near_origin[i] = static_cast<float>(start[i] + toward);
     probe.far_origin[i] = static_cast<float>(start[i] - toward);
-    const bool tiny = !(std::fabs(ray.direction[i]) >= kLeastComponent * largest);
-    probe.inverse[i] = static_cast<float>(tiny ? ray.sign[i] / kLeastComponent : ray.inverse[i] * largest);
+    const bool tiny = !(std::fabs(ray.direction[i]) >= BoxProbe::kLeastComponent * largest);
+    probe.inverse[i] =
+        static_cast<float>(tiny ? ray.sign[i] / BoxProbe::kLeastComponent : ray.inverse[i] * largest);
   }
   return true;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "rayshade/geometry/hierarchy_packs.h"
 #include "rayshade/geometry/pack_tracer.h"
 #include "rayshade/geometry/trace_context.h"
 
@@ -121,7 +122,9 @@ template <class Query, class Answer>
 void ClassTracer::ask_hierarchy(std::span<const Query> queries, std::span<Answer> answers,
                                 std::span<const std::uint32_t> which, Batch& batch,
                                 TraceScratch& scratch) const {
-  for (const std::uint32_t i : which) ask_hierarchy(queries[i], answers[i], batch, scratch);
+  HierarchyPacks packs(scene_, scratch);
+  packs.ask(queries, answers, which);
+  for (const std::uint32_t i : which) batch.counts->add({1, answers[i].tests, answers[i].bounds_tests});
 }
 
 template <class Query, class Answer>

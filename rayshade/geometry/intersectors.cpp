@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "rayshade/geometry/hierarchy_packs.h"
 #include "rayshade/geometry/intersector.h"
 #include "rayshade/geometry/intersector_report.h"
 #include "rayshade/geometry/pack_tracer.h"
@@ -73,6 +74,9 @@ class GroupIntersector : public Intersector {
         tracer.load(queries.subspan(i), answers.subspan(i), nullptr, static_cast<int>(n));
         nearest_in_pack(tracer);
       }
+    } else if (!brute_force_ && scene_.groups[0].hierarchy) {
+      HierarchyPacks(scene_, scratch).ask(queries, answers);
+      return;
     }
     for (; i < queries.size(); ++i) ask_world(scene_, queries[i], answers[i], scratch);
   }
@@ -88,6 +92,9 @@ class GroupIntersector : public Intersector {
         occluded_in_pack(tracer);
         tracer.answer_occluded(answers.subspan(i));
       }
+    } else if (!brute_force_ && scene_.groups[0].hierarchy) {
+      HierarchyPacks(scene_, scratch).ask(queries, answers);
+      return;
     }
     for (; i < queries.size(); ++i) ask_world(scene_, queries[i], answers[i], scratch);
   }

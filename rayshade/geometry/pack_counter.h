@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 
+#include "fas/bit_counts.h"
 #include "rayshade/geometry/ray_pack.h"
 #include "rayshade/geometry/trace_context.h"
 
@@ -18,8 +19,8 @@ class PackCounter {
   void reset(const RayPack& pack) {
     rays_ = static_cast<std::size_t>(pack.count);
     all_ = pack.all();
-    tests_ = {};
-    bounds_tests_ = {};
+    tests_.clear();
+    bounds_tests_.clear();
   }
   /// A test of a box or of a block of candidates for every ray of the mask.
   void add_bounds(RayPack::Mask mask) {
@@ -34,29 +35,41 @@ class PackCounter {
     counts.tests[kind] += static_cast<std::uint64_t>(std::popcount(tested));
     counts.hits[kind] += static_cast<std::uint64_t>(std::popcount(hit));
   }
+  /// Tests of boxes, counted by themselves.
+  void add_bounds(const fas::BitCounts& tests) {
+    for (std::size_t i = 0; i < rays_; ++i) {
+      const std::uint32_t n = tests.of(i);
+      bounds_tests_.of_ray[i] += n;
+      context_.bounds_tests += n;
+    }
+  }
   /// What one ray was tested with on its own, beside the pack.
   void add_to_ray(std::size_t ray, std::uint32_t tests, std::uint32_t bounds_tests) {
     tests_.of_ray[ray] += tests;
     bounds_tests_.of_ray[ray] += bounds_tests;
   }
-  std::uint32_t tests(std::size_t ray) const { return tests_.of_all + tests_.of_ray[ray]; }
-  std::uint32_t bounds_tests(std::size_t ray) const {
-    return bounds_tests_.of_all + bounds_tests_.of_ray[ray];
-  }
+  std::uint32_t tests(std::size_t ray) const { return tests_.of(ray); }
+  std::uint32_t bounds_tests(std::size_t ray) const { return bounds_tests_.of(ray); }
 
  private:
-  /// Most tests are of all rays.
   struct Counts {
-    std::uint32_t of_all = 0;
+    std::uint32_t of_all = 0;  ///< most tests are of all rays
+    fas::BitCounts of_some;
     std::array<std::uint32_t, RayPack::kMost> of_ray{};
+
+    void clear() {
+      of_all = 0;
+      of_some.clear();
+      of_ray = {};
+    }
+    std::uint32_t of(std::size_t ray) const { return of_all + of_some.of(ray) + of_ray[ray]; }
   };
 
   void add_one(Counts& counts, RayPack::Mask mask) const {
-    if (mask == all_) {
+    if (mask == all_)
       ++counts.of_all;
-      return;
-    }
-    for (std::size_t i = 0; i < rays_; ++i) counts.of_ray[i] += static_cast<std::uint32_t>(mask >> i & 1);
+    else
+      counts.of_some.add(mask);
   }
 
   TraceContext& context_;

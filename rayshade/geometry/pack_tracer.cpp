@@ -56,7 +56,7 @@ void PackTracer::load(std::span<const OcclusionQuery> queries, const std::uint32
 RayPack::Mask PackTracer::improve(LeafId id, RayPack::Mask mask) {
   const Leaf& leaf = context_.scene.leaves[id];
   if ((leaf.opacity & opacity_) == 0) return 0;
-  if (vectorised(leaf)) {
+  if (vectorised(leaf, mask)) {
     const RayPack::Mask better = improve_pack(context_.scene, id, pack_, mask);
     counter_.add_tests(leaf, mask, better);
     found_ |= better;
@@ -121,7 +121,7 @@ RayPack::Mask PackTracer::occlude(LeafId id, RayPack::Mask mask) {
 
 RayPack::Mask PackTracer::occluded_by(LeafId id, const Leaf& leaf, Opacity opacity, RayPack::Mask mask) {
   if (mask == 0) return 0;
-  if (vectorised(leaf)) {
+  if (vectorised(leaf, mask)) {
     const RayPack::Mask stopped = occlude_pack(context_.scene, leaf, pack_, mask);
     counter_.add_tests(leaf, mask, stopped);
     return stopped;

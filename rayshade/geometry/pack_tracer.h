@@ -6,6 +6,7 @@
 #include <array>
 #include <span>
 
+#include "fas/pack_walk.h"
 #include "rayshade/geometry/csg_pack.h"
 #include "rayshade/geometry/intersector.h"
 #include "rayshade/geometry/pack_counter.h"
@@ -49,16 +50,28 @@ class PackTracer {
   }
   const RayPack& pack() const { return pack_; }
   Opacity opacity() const { return opacity_; }
+  /// The rays, for boxes.
+  fas::PackRays rays() {
+    prepare_pack(pack_);
+    return {{pack_.origin[0], pack_.origin[1], pack_.origin[2]},
+            {pack_.direction[0], pack_.direction[1], pack_.direction[2]},
+            {pack_.inverse[0], pack_.inverse[1], pack_.inverse[2]},
+            pack_.size,
+            pack_.lo,
+            pack_.t,
+            pack_.count};
+  }
   /// Counts a test of a box or of a block of candidates for every ray of the mask.
   void count_bounds(RayPack::Mask mask) { counter_.add_bounds(mask); }
+  void count_bounds(const fas::BitCounts& tests) { counter_.add_bounds(tests); }
 
  private:
   static constexpr std::uint32_t kInAnswer = kNone;  ///< the whole hit stands in the answer
 
   template <class Query>
   void load_ray(const Query& query, int i);
-  bool vectorised(const Leaf& leaf) const {
-    return leaf.kind != LeafKind::kCsg && tested_in_packs(context_.scene, leaf) &&
+  bool vectorised(const Leaf& leaf, RayPack::Mask mask) const {
+    return leaf.kind != LeafKind::kCsg && (mask & (mask - 1)) != 0 && tested_in_packs(context_.scene, leaf) &&
            (all_unit_ || leaf.kind != LeafKind::kSphere);
   }
   bool csg_in_packs(const Leaf& leaf, RayPack::Mask mask) const {

@@ -534,10 +534,14 @@ RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const R
   return kOcclude.best()(scene, leaf, pack, mask);
 }
 
+void prepare_pack(RayPack& pack) {
+  if (!pack.clip_ready) kPrepare.best()(pack);
+  pack.clip_ready = true;
+}
+
 RayPack::Mask clip_pack(const Bounds3& box, double condition, RayPack& rays, const RayPack& limits,
                         RayPack::Mask mask) {
-  if (!rays.clip_ready) kPrepare.best()(rays);
-  rays.clip_ready = true;
+  prepare_pack(rays);
   return kClip.best()(box, condition, rays, limits, mask);
 }
 

@@ -23,7 +23,7 @@ struct RayPack {
   int count = 0;
   alignas(64) double origin[3][kMost];
   alignas(64) double direction[3][kMost];
-  // For clip_pack(), which finds them when it is first asked about new rays:
+  // For boxes; see prepare_pack():
   bool clip_ready = false;               ///< false: they are of other rays
   alignas(64) double inverse[3][kMost];  ///< of the direction
   alignas(64) double size[kMost];        ///< largest coordinate of the origin, without sign
@@ -76,6 +76,8 @@ RayPack::Mask improve_pack(const CompiledScene& scene, LeafId id, RayPack& pack,
 /// Which rays of `mask` the leaf stops between lo and t (before the far limit in the sense of its kind).
 RayPack::Mask occlude_pack(const CompiledScene& scene, const Leaf& leaf, const RayPack& pack,
                            RayPack::Mask mask);
+/// Finds what is needed for boxes, unless it is known.
+void prepare_pack(RayPack& pack);
 /// Which rays of `mask` may meet the box, which is not empty, within (lo, t) of `limits`, whatever the exact
 /// tests round (fas::may_meet).
 RayPack::Mask clip_pack(const Bounds3& box, double condition, RayPack& rays, const RayPack& limits,

@@ -6,6 +6,7 @@
 
 #include "rayshade/render/block_renderer.h"
 #include "rayshade/sampling/stop.h"
+#include "rayshade/sampling/tile_order.h"
 
 namespace rayshade {
 
@@ -47,7 +48,7 @@ void BlockRenderer::render_until_exact(const PixelRect& rect, BlockPixels& out) 
   const PixelRect& outer = rounds.outer;
   rounds.sums.resize(outer.area());
   samples_.clear();
-  for (std::size_t p = 0; p < outer.area(); ++p) take_samples(rounds, p, 0, rule.first());
+  TileOrder(outer).each([&](int x, int y) { take_samples(rounds, outer.index(x, y), 0, rule.first()); });
   trace_round(rounds);
   counts_.halo_samples += (outer.area() - rect.area()) * static_cast<std::size_t>(rule.first());
 

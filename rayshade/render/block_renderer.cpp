@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "rayshade/sampling/sample_numbers.h"
+#include "rayshade/sampling/tile_order.h"
 
 namespace rayshade {
 BlockRenderer::BlockRenderer(const FrameScene& frame) : frame_(frame), tree_(frame.shading) {}
@@ -94,9 +95,7 @@ void BlockRenderer::add_cost(const SampleResult& result, const SampleCost* cost,
 
 void BlockRenderer::render_single(const PixelRect& rect) {
   samples_.clear();
-  for (int y = rect.y0; y < rect.y1; ++y) {
-    for (int x = rect.x0; x < rect.x1; ++x) take_sample(x, y, chosen_sample(x, y));
-  }
+  TileOrder(rect).each([&](int x, int y) { take_sample(x, y, chosen_sample(x, y)); });
   trace_samples();
 }
 
@@ -122,20 +121,19 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
   std::swap(costs_, single_costs_);
   const std::vector<SampleResult>& single = single_;
   counts_.halo_samples += single.size() - pixels;
-  const auto outer_index = [&](int x, int y) {
-    return static_cast<std::size_t>(y - outer.y0) * outer.width() + (x - outer.x0);
-  };
+  const TileOrder order(outer);
   std::vector<bool> full;
   if (refine) {
     std::vector<Color> colors(single.size());
-    for (std::size_t i = 0; i < single.size(); ++i) colors[i] = single[i].color;
+    std::size_t i = 0;
+    order.each([&](int x, int y) { colors[outer.index(x, y)] = single[i++].color; });
     full = choose_full(rect, colors, settings.contrast, settings.width, settings.height);
   }
 
   std::size_t index = 0;
   for (int y = rect.y0; y < rect.y1; ++y) {
     for (int x = rect.x0; x < rect.x1; ++x, ++index) {
-      const std::size_t i = outer_index(x, y);
+      const std::size_t i = order.index(x, y);
       const SampleResult& one = single[i];
       store_pixel(&out.rgba[4 * index], one.color, one.hit && !frame_.sample_map ? 1.0 : 0.0);
       if (layered) {
@@ -170,7 +168,7 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
       const int x = rect.x0 + static_cast<int>(p % static_cast<std::size_t>(rect.width()));
       const int y = rect.y0 + static_cast<int>(p / static_cast<std::size_t>(rect.width()));
       const int reused = chosen_sample(x, y);
-      const SampleResult& one = single[outer_index(x, y)];
+      const SampleResult& one = single[order.index(x, y)];
       Color sum;
       double alpha = 0;
       for (int k = 0; k < count; ++k) {

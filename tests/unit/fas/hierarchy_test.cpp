@@ -8,61 +8,18 @@
 #include <numeric>
 
 #include "fas/hierarchy_candidates.h"
-#include "tests/unit/fas/random_geometry.h"
+#include "tests/unit/fas/random_hierarchy.h"
 #include "tests/unit/fas/targets.h"
 
 namespace fas {
 namespace {
 
+using test::aim;
+using test::Built;
 using test::Dice;
+using test::random_boxes;
 constexpr double kFar = 1e100;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// Boxes of very unlike sizes, flat and empty of volume ones among them, some in the same place.
-std::vector<Bounds> random_boxes(Dice& dice, int count) {
-  std::vector<Bounds> out;
-  for (int i = 0; i < count; ++i) {
-    if (i > 0 && dice.below(10) == 0) {
-      out.push_back(out[static_cast<std::size_t>(dice.below(i))]);
-      continue;
-    }
-    const Point at = dice.in_box(10);
-    Bounds box{at, at};
-    const double size = dice.size(-6, 0.5);
-    for (double& x : box.hi) x += dice.below(4) == 0 ? 0 : size * dice.uniform();
-    out.push_back(box);
-  }
-  return out;
-}
-
-struct Built {
-  explicit Built(const std::vector<Bounds>& boxes, std::vector<std::uint8_t> given = {}, int threads = 1)
-      : masks(given.empty() ? std::vector<std::uint8_t>(boxes.size(), 1) : std::move(given)),
-        hierarchy(boxes, masks, threads, order) {}
-  std::vector<std::uint8_t> masks;
-  std::vector<std::uint32_t> order;
-  Hierarchy hierarchy;
-};
-
-/// A ray through a point of a box, often one on a face or edge, often along axes or nearly so.
-void aim(Dice& dice, const Bounds& box, double* o, double* d, double& t) {
-  const Point direction = dice.direction();
-  for (std::size_t i = 0; i < 3; ++i) d[i] = direction[i];
-  if (dice.below(3) == 0) d[dice.below(3)] = dice.below(2) ? 0.0 : 1e-200;
-  if (dice.below(4) == 0) d[dice.below(3)] = -0.0;
-  if (dice.below(3) == 0) {
-    const double factor = dice.size(-5, 5);
-    for (int i = 0; i < 3; ++i) d[i] *= factor;
-  }
-  if (d[0] == 0 && d[1] == 0 && d[2] == 0) d[1] = -1;
-  const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  t = std::ldexp(1, dice.below(12)) / length;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double share = dice.below(2) ? dice.uniform() : dice.below(2);
-    const double target = share == 1 ? box.hi[i] : box.lo[i] + share * (box.hi[i] - box.lo[i]);
-    o[i] = target - t * d[i];
-  }
-}
 
 std::vector<std::uint32_t> visits(const Hierarchy& hierarchy, const WalkKernel& kernel, const BoxProbe& probe,
                                   float far, std::uint8_t mask, std::uint32_t& tests) {

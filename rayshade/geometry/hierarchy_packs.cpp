@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "rayshade/geometry/hierarchy_packs.h"
+
+#include <cmath>
+
+#include "fas/pack_walk.h"
+#include "rayshade/geometry/trace_context.h"
+
+namespace rayshade {
+namespace {
+
+/// Fewer rays than this are traced one by one.
+constexpr std::uint32_t kFewest = 6;
+
+std::size_t octant(const Vec3& d) {
+  return static_cast<std::size_t>(std::signbit(d.x)) + 2 * static_cast<std::size_t>(std::signbit(d.y)) +
+         4 * static_cast<std::size_t>(std::signbit(d.z));
+}
+
+}  // namespace
+
+HierarchyPacks::HierarchyPacks(const CompiledScene& scene, TraceScratch& scratch)
+    : scene_(scene), world_(scene.groups[0]), scratch_(scratch), tracer_(scene, scratch) {}
+
+void HierarchyPacks::ask(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
+                         std::span<const std::uint32_t> which) {
+  ask(queries, answers, which.size(), [&](std::size_t k) { return which[k]; });
+}
+
+void HierarchyPacks::ask(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
+                         std::span<const std::uint32_t> which) {
+  ask(queries, answers, which.size(), [&](std::size_t k) { return which[k]; });
+}
+
+void HierarchyPacks::ask(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers) {
+  ask(queries, answers, queries.size(), [](std::size_t k) { return static_cast<std::uint32_t>(k); });
+}
+
+void HierarchyPacks::ask(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers) {
+  ask(queries, answers, queries.size(), [](std::size_t k) { return static_cast<std::uint32_t>(k); });
+}
+
+template <class Query, class Answer, class Place>
+void HierarchyPacks::ask(std::span<const Query> queries, std::span<Answer> answers, std::size_t count,
+                         const Place& place) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = place(k);
+    const Query& query = queries[i];
+    Waiting& waiting = waiting_[octant(query.ray.direction) + 8 * (static_cast<std::size_t>(query.mask) - 1)];
+    waiting.places[waiting.count++] = i;
+    if (waiting.count == RayPack::kMost) trace(queries, answers, waiting);
+  }
+  for (Waiting& waiting : waiting_) {
+    if (waiting.count > 0) trace(queries, answers, waiting);
+  }
+}
+
+template <class Query, class Answer>
+void HierarchyPacks::trace(std::span<const Query> queries, std::span<Answer> answers, Waiting& waiting) {
+  if (waiting.count < kFewest) {
+    for (std::uint32_t k = 0; k < waiting.count; ++k)
+      ask_world(scene_, queries[waiting.places[k]], answers[waiting.places[k]], scratch_);
+  } else {
+    walk(queries, answers, waiting);
+  }
+  waiting.count = 0;
+}
+
+void HierarchyPacks::walk(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
+                          const Waiting& waiting) {
+  tracer_.load(queries, answers, waiting.places.data(), static_cast<int>(waiting.count));
+  const RayPack::Mask all = tracer_.pack().all();
+  for (LeafId leaf = world_.first; leaf < world_.first + world_.unbounded; ++leaf) tracer_.improve(leaf, all);
+  through_hierarchy(tracer_.opacity(), all,
+                    [&](LeafId first, LeafId last, RayPack::Mask rays, RayPack::Mask& shortened) {
+                      for (LeafId leaf = first; leaf < last; ++leaf) shortened |= tracer_.improve(leaf, rays);
+                      return RayPack::Mask{0};
+                    });
+  tracer_.answer_nearest();
+}
+
+void HierarchyPacks::walk(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
+                          const Waiting& waiting) {
+  tracer_.load(queries, waiting.places.data(), static_cast<int>(waiting.count));
+  RayPack::Mask open = tracer_.pack().all();
+  const auto try_leaves = [&](LeafId first, LeafId last, RayPack::Mask rays) {
+    RayPack::Mask known = 0;
+    for (LeafId leaf = first; leaf < last && known != rays; ++leaf)
+      known |= tracer_.occlude(leaf, rays & ~known);
+    return known;
+  };
+  open &= ~try_leaves(world_.first, world_.first + world_.unbounded, open);
+  // What lies outside the mask counts too: see OcclusionAnswer::others.
+  through_hierarchy(kAnyOpacity, open,
+                    [&](LeafId first, LeafId last, RayPack::Mask rays, RayPack::Mask& /*shortened*/) {
+                      return try_leaves(first, last, rays);
+                    });
+  tracer_.answer_occluded(answers);
+}
+
+template <class Test>
+void HierarchyPacks::through_hierarchy(Opacity opacity, RayPack::Mask rays, const Test& test) {
+  if (rays == 0) return;
+  const LeafId bounded = world_.first + world_.unbounded;
+  fas::PackProbe probe;
+  fas::PackProbe::Mask met = 0, unusable = 0;
+  tracer_.count_bounds(rays);
+  fas::make_probes(world_.hierarchy->clip_box(), world_.condition, tracer_.rays(), probe, met, unusable);
+  RayPack::Mask shortened = 0;
+  if ((unusable & rays) != 0) test(bounded, world_.first + world_.count, unusable & rays, shortened);
+  fas::BitCounts box_tests;
+  fas::traverse(*world_.hierarchy, probe, opacity, met & rays & ~unusable, box_tests,
+                [&](std::uint32_t first, std::uint32_t count, fas::PackProbe::Mask some) {
+                  shortened = 0;
+                  const RayPack::Mask done = test(bounded + first, bounded + first + count, some, shortened);
+                  for_each_ray(shortened, [&](std::size_t i) { probe.shorten(i, tracer_.pack().t[i]); });
+                  return done;
+                });
+  tracer_.count_bounds(box_tests);
+}
+
+}  // namespace rayshade
