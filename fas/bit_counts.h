@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -28,8 +29,32 @@ class BitCounts {
     for (std::size_t k = used_; k-- > 0;) count = 2 * count + (planes_[k] >> ray & 1);
     return static_cast<std::uint32_t>(count);
   }
+  /// Adds all counts to those of `to`.
+  void add_to(std::array<std::uint32_t, 64>& to) const {
+    if (used_ > 8) {
+      for (std::size_t ray = 0; ray < 64; ++ray) to[ray] += of(ray);
+      return;
+    }
+    for (std::size_t first = 0; first < 64; first += 8) {
+      std::uint64_t bytes = 0;  // eight counts
+      for (std::size_t k = 0; k < used_; ++k) bytes += spread(planes_[k] >> first & 0xff) << k;
+      for (std::size_t i = 0; i < 8; ++i) to[first + i] += static_cast<std::uint32_t>(bytes >> 8 * i & 0xff);
+    }
+  }
+  /// The sum of all counts.
+  std::uint64_t total() const {
+    std::uint64_t sum = 0;
+    for (std::size_t k = 0; k < used_; ++k) sum += static_cast<std::uint64_t>(std::popcount(planes_[k])) << k;
+    return sum;
+  }
 
  private:
+  /// Bit i goes to the lowest bit of byte i.
+  static std::uint64_t spread(std::uint64_t bits) {
+    const std::uint64_t seven = (bits & 0x7f) * 0x02'0408'1020'4081 & 0x0101'0101'0101'0101;
+    return seven | (bits >> 7 << 56);
+  }
+
   std::array<std::uint64_t, kPlanes> planes_;  // NOLINT: only the first `used_` are meaningful
   std::size_t used_ = 0;
 };

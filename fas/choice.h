@@ -68,26 +68,20 @@ class Choice {
   }
   /// Whether the hierarchy comes first in the next comparison: whoever does finds the caches cold.
   bool hierarchy_first() const { return turn_.load(std::memory_order_relaxed) / 2 % 2 != 0; }
-  /// After a comparison of so many rays on either side: nanoseconds, and those of them to make nodes. Groups
-  /// that made many tell little of what the tree is like when it is there.
+  /// After a comparison of so many rays on either side: nanoseconds, and those of them to make nodes.
   void compared(std::size_t rays, double tree, double hierarchy, double building_now) {
     plain(rays, hierarchy);
-    const std::uint64_t tried = add(tried_, rays);
-    if (building_now < 0.1 * tree) {
-      add(compared_, rays);
-      add(tree_ns_, static_cast<std::uint64_t>(tree - building_now));
-      add(hierarchy_ns_, static_cast<std::uint64_t>(hierarchy));
-    }
+    const std::uint64_t compared = add(compared_, rays);
+    add(tree_ns_, static_cast<std::uint64_t>(std::max(tree - building_now, 0.0)));
+    add(hierarchy_ns_, static_cast<std::uint64_t>(hierarchy));
     const auto through_tree = static_cast<double>(all_tree_rays_.load(std::memory_order_relaxed));
     // In the beginning every group comes to new places, and what they take to be made tells too much.
     const bool early = through_tree < kEarly * expected_;
     const double making = early ? 0 : making_per_ray();
-    if (making < 0 || tried < kTrial) return;
-    const std::uint64_t quiet = compared_.load(std::memory_order_relaxed);
-    const double ratio = quiet >= kTrial ? share(tree_ns_, hierarchy_ns_) : kGuess;
+    if (making < 0 || compared < kTrial) return;
     // Few comparisons are of few places, and of caches that are still cold.
-    const double doubt = quiet < 4 * kTrial ? 1.1 : 1.02;
-    if (ratio + making / plain_per_ray() > doubt) leave();
+    const double doubt = compared < 4 * kTrial ? 1.1 : 1.02;
+    if (share(tree_ns_, hierarchy_ns_) + making / plain_per_ray() > doubt) leave();
   }
 
  private:
@@ -120,8 +114,8 @@ class Choice {
   void leave() {
     const std::uint64_t seen = seen_.load(std::memory_order_relaxed);
     again_.store(seen + std::max<std::uint64_t>(kPause, seen), std::memory_order_relaxed);
-    for (std::atomic<std::uint64_t>* sum : {&compared_, &tried_, &tree_ns_, &hierarchy_ns_, &tree_rays_,
-                                            &building_, &all_building_, &all_tree_rays_})
+    for (std::atomic<std::uint64_t>* sum :
+         {&compared_, &tree_ns_, &hierarchy_ns_, &tree_rays_, &building_, &all_building_, &all_tree_rays_})
       sum->store(0, std::memory_order_relaxed);
     building_per_ray_.store(-1, std::memory_order_relaxed);
     tree_mode_.store(false, std::memory_order_relaxed);
@@ -136,15 +130,15 @@ class Choice {
   /// The shortest time, in rays, that a tree is left alone.
   static constexpr std::uint64_t kPause = 1 << 16;
   /// Time through a tree by that through the hierarchy, as long as nothing better is known.
-  static constexpr double kGuess = 0.7;
+  static constexpr double kGuess = 0.9;
   /// Nanoseconds of a ray through the hierarchy, as long as nothing better is known.
-  static constexpr double kTypical = 120;
+  static constexpr double kTypical = 80;
   double expected_, making_;
   std::atomic<bool> tree_mode_{false};
   std::atomic<double> building_per_ray_{-1};  ///< of the latest window
   std::atomic<std::uint32_t> turn_{0};
-  std::atomic<std::uint64_t> compared_{0}, tried_{0}, tree_ns_{0}, hierarchy_ns_{0}, tree_rays_{0},
-      building_{0}, all_building_{0}, all_tree_rays_{0};
+  std::atomic<std::uint64_t> compared_{0}, tree_ns_{0}, hierarchy_ns_{0}, tree_rays_{0}, building_{0},
+      all_building_{0}, all_tree_rays_{0};
   std::atomic<std::uint64_t> plain_rays_{0}, plain_ns_{0}, seen_{0}, again_{0};
 };
 

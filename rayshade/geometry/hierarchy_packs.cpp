@@ -108,15 +108,13 @@ void HierarchyPacks::through_hierarchy(Opacity opacity, RayPack::Mask rays, cons
   fas::make_probes(world_.hierarchy->clip_box(), world_.condition, tracer_.rays(), probe, met, unusable);
   RayPack::Mask shortened = 0;
   if ((unusable & rays) != 0) test(bounded, world_.first + world_.count, unusable & rays, shortened);
-  fas::BitCounts box_tests;
-  fas::traverse(*world_.hierarchy, probe, opacity, met & rays & ~unusable, box_tests,
+  fas::traverse(*world_.hierarchy, probe, opacity, met & rays & ~unusable, tracer_.counter().bounds(),
                 [&](std::uint32_t first, std::uint32_t count, fas::PackProbe::Mask some) {
                   shortened = 0;
                   const RayPack::Mask done = test(bounded + first, bounded + first + count, some, shortened);
                   for_each_ray(shortened, [&](std::size_t i) { probe.shorten(i, tracer_.pack().t[i]); });
                   return done;
                 });
-  tracer_.count_bounds(box_tests);
 }
 
 }  // namespace rayshade

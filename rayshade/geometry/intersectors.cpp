@@ -99,6 +99,9 @@ class GroupIntersector : public Intersector {
     for (; i < queries.size(); ++i) ask_world(scene_, queries[i], answers[i], scratch);
   }
 
+  /// Rays of a span share packs.
+  std::size_t preferred_span() const override { return brute_force_ ? 64 : 512; }
+
   void report(const TraceScratch& /*scratch*/, IntersectorReport& into) const override {
     using Method = IntersectorReport::Method;
     into.method = brute_force_ ? Method::kBruteForce : in_packs_ ? Method::kPacks : Method::kHierarchy;

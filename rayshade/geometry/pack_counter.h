@@ -23,10 +23,7 @@ class PackCounter {
     bounds_tests_.clear();
   }
   /// A test of a box or of a block of candidates for every ray of the mask.
-  void add_bounds(RayPack::Mask mask) {
-    add_one(bounds_tests_, mask);
-    context_.bounds_tests += static_cast<std::uint32_t>(std::popcount(mask));
-  }
+  void add_bounds(RayPack::Mask mask) { add_one(bounds_tests_, mask); }
   /// A test of a leaf; of CSG, the operands count themselves.
   void add_tests(const Leaf& leaf, RayPack::Mask tested, RayPack::Mask hit) {
     if (leaf.kind != LeafKind::kCsg) add_one(tests_, tested);
@@ -35,21 +32,23 @@ class PackCounter {
     counts.tests[kind] += static_cast<std::uint64_t>(std::popcount(tested));
     counts.hits[kind] += static_cast<std::uint64_t>(std::popcount(hit));
   }
-  /// Tests of boxes, counted by themselves.
-  void add_bounds(const fas::BitCounts& tests) {
-    for (std::size_t i = 0; i < rays_; ++i) {
-      const std::uint32_t n = tests.of(i);
-      bounds_tests_.of_ray[i] += n;
-      context_.bounds_tests += n;
-    }
-  }
+  /// Where others count tests of boxes.
+  fas::BitCounts& bounds() { return bounds_tests_.of_some; }
   /// What one ray was tested with on its own, beside the pack.
   void add_to_ray(std::size_t ray, std::uint32_t tests, std::uint32_t bounds_tests) {
     tests_.of_ray[ray] += tests;
     bounds_tests_.of_ray[ray] += bounds_tests;
   }
-  std::uint32_t tests(std::size_t ray) const { return tests_.of(ray); }
-  std::uint32_t bounds_tests(std::size_t ray) const { return bounds_tests_.of(ray); }
+  /// What every ray was tested with.
+  struct Sums {
+    std::array<std::uint32_t, RayPack::kMost> tests, bounds_tests;
+  };
+  /// Once, when all of them are counted.
+  Sums finish() {
+    context_.bounds_tests +=
+        static_cast<std::uint32_t>(bounds_tests_.of_all * rays_ + bounds_tests_.of_some.total());
+    return {tests_.sums(), bounds_tests_.sums()};
+  }
 
  private:
   struct Counts {
@@ -62,7 +61,12 @@ class PackCounter {
       of_some.clear();
       of_ray = {};
     }
-    std::uint32_t of(std::size_t ray) const { return of_all + of_some.of(ray) + of_ray[ray]; }
+    std::array<std::uint32_t, RayPack::kMost> sums() const {
+      std::array<std::uint32_t, RayPack::kMost> out = of_ray;
+      of_some.add_to(out);
+      for (std::uint32_t& n : out) n += of_all;
+      return out;
+    }
   };
 
   void add_one(Counts& counts, RayPack::Mask mask) const {

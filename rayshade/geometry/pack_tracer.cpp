@@ -88,11 +88,12 @@ RayPack::Mask PackTracer::improve(LeafId id, RayPack::Mask mask) {
 }
 
 void PackTracer::answer_nearest() {
+  const PackCounter::Sums sums = counter_.finish();
   for (int k = 0; k < pack_.count; ++k) {
     const auto i = static_cast<std::size_t>(k);
     NearestAnswer& answer = answers_[places_[i]];
-    answer.tests = counter_.tests(i);
-    answer.bounds_tests = counter_.bounds_tests(i);
+    answer.tests = sums.tests[i];
+    answer.bounds_tests = sums.bounds_tests[i];
     answer.found = false;
     if ((found_ >> i & 1) == 0) continue;
     const auto rank = static_cast<std::uint64_t>(pack_.rank[i]);
@@ -137,11 +138,12 @@ RayPack::Mask PackTracer::occluded_by(LeafId id, const Leaf& leaf, Opacity opaci
   return stopped;
 }
 
-void PackTracer::answer_occluded(std::span<OcclusionAnswer> answers) const {
+void PackTracer::answer_occluded(std::span<OcclusionAnswer> answers) {
+  const PackCounter::Sums sums = counter_.finish();
   for (int k = 0; k < pack_.count; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    answers[places_[i]] = {(stopped_ >> i & 1) != 0, (others_ >> i & 1) != 0, counter_.tests(i),
-                           counter_.bounds_tests(i)};
+    answers[places_[i]] = {(stopped_ >> i & 1) != 0, (others_ >> i & 1) != 0, sums.tests[i],
+                           sums.bounds_tests[i]};
   }
 }
 

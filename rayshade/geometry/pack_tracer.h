@@ -40,7 +40,7 @@ class PackTracer {
   /// have met something outside the mask of the queries, where they have one.
   RayPack::Mask occlude(LeafId leaf, RayPack::Mask mask);
   /// Writes the answers of the occlusion queries loaded.
-  void answer_occluded(std::span<OcclusionAnswer> answers) const;
+  void answer_occluded(std::span<OcclusionAnswer> answers);
 
   /// Those of `mask` that may meet a box before their far limit or best hit.
   RayPack::Mask near_box(const Bounds3& box, double condition, RayPack::Mask mask) {
@@ -63,7 +63,8 @@ class PackTracer {
   }
   /// Counts a test of a box or of a block of candidates for every ray of the mask.
   void count_bounds(RayPack::Mask mask) { counter_.add_bounds(mask); }
-  void count_bounds(const fas::BitCounts& tests) { counter_.add_bounds(tests); }
+  /// For counting them from outside.
+  PackCounter& counter() { return counter_; }
 
  private:
   static constexpr std::uint32_t kInAnswer = kNone;  ///< the whole hit stands in the answer

@@ -233,15 +233,23 @@ INSTANTIATE_TEST_SUITE_P(Targets, PackWalkTest, testing::ValuesIn(test::targets(
 TEST(BitCounts, CountEveryRayOfEveryMask) {
   Dice dice(34);
   BitCounts counts;
-  for (int round = 0; round < 3; ++round) {
-    std::vector<std::uint32_t> plain(64, 0);
+  for (const int masks : {0, 1, 100, 255, 300, 3000}) {
+    std::array<std::uint32_t, 64> plain{}, sums{};
     counts.clear();
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < masks; ++i) {
       const Mask mask = dice.below(3) == 0 ? ~Mask{0} : static_cast<Mask>(dice.uniform() * 0x1p64);
       counts.add(mask);
       for (std::size_t ray = 0; ray < 64; ++ray) plain[ray] += static_cast<std::uint32_t>(mask >> ray & 1);
     }
-    for (std::size_t ray = 0; ray < 64; ++ray) EXPECT_EQ(counts.of(ray), plain[ray]);
+    std::uint64_t total = 0;
+    counts.add_to(sums);
+    counts.add_to(sums);
+    for (std::size_t ray = 0; ray < 64; ++ray) {
+      EXPECT_EQ(counts.of(ray), plain[ray]);
+      EXPECT_EQ(sums[ray], 2 * plain[ray]);
+      total += plain[ray];
+    }
+    EXPECT_EQ(counts.total(), total);
   }
 }
 
