@@ -44,38 +44,9 @@ RayClass shadow_class(const ShadingLight& light);
 /// The spot factor of shading.md 4.1 for x = cosine of the angle off the axis.
 double spot_factor(const ShadingLight& light, double x);
 
-/// How a light stands to a point before shadows: unit direction from the point, distance (kFar for
-/// directional), and the colour that arrives (intensity times spot factor).
-struct Illumination {
-  Vec3 direction;
-  double distance = kFar;
-  Color color;
-  bool reaches = true;  ///< false where the spot factor is exactly 0 or the light sits on the point
-};
-
-/// `xi`, `zeta`: uniform in [0,1), used by area lights only (shading.md 4.3 with FIX 5).
-inline Illumination illuminate(const ShadingLight& light, const Vec3& point, double xi, double zeta) {
-  Illumination out;
-  out.color = light.intensity;
-  if (light.kind == LightKind::kDirectional) {
-    out.direction = light.position;
-    return out;
-  }
-  Vec3 place = light.position;
-  if (light.kind == LightKind::kArea) place = place + xi * light.edge_u + zeta * light.edge_v;
-  const Vec3 toward = place - point;
-  out.distance = length(toward);
-  if (!(out.distance > 0)) {
-    out.reaches = false;
-    return out;
-  }
-  out.direction = toward / out.distance;
-  if (light.kind == LightKind::kSpot) {
-    const double factor = spot_factor(light, -dot(light.axis, out.direction));
-    out.reaches = factor != 0;
-    out.color *= factor;
-  }
-  return out;
+/// The point of an area light's cell for `xi`, `zeta` uniform in [0,1) (shading.md 4.3 with FIX 5).
+inline Vec3 area_place(const ShadingLight& light, double xi, double zeta) {
+  return light.position + xi * light.edge_u + zeta * light.edge_v;
 }
 
 /// The point of an extended light toward which the shadow ray of a sample goes, relative to the shaded point

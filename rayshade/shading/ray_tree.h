@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,7 +18,7 @@
 #include "rayshade/geometry/intersector.h"
 #include "rayshade/scene/settings.h"
 #include "rayshade/shading/counts.h"
-#include "rayshade/shading/lights.h"
+#include "rayshade/shading/light_aims.h"
 #include "rayshade/shading/reused_list.h"
 #include "rayshade/texture/apply.h"
 
@@ -107,6 +108,7 @@ class RayTree {
   struct Node;
   struct Shade;
   struct PendingLight;
+  struct LitHit;
   struct Walk;
   template <class SampleOf>
   class Owners;
@@ -121,6 +123,9 @@ class RayTree {
   void shade_batch(std::span<const EyeSample> samples, std::span<SampleResult> results);
   void shade_hits(std::span<const EyeSample> samples, std::span<SampleResult> results);
   void emit_lights(std::size_t first_light, std::size_t last_light, std::span<const EyeSample> samples);
+  void emit_light(std::uint32_t number, std::span<const LitHit> hits, std::span<const EyeSample> samples);
+  std::array<double, 2> light_draws(const ShadingLight& light, const Node& node,
+                                    std::span<const EyeSample> samples) const;
   void answer_shadows(std::span<SampleResult> results);
   void follow_transparent(bool through_all, std::span<SampleResult> results);
   void raise_highlights();
@@ -144,6 +149,7 @@ class RayTree {
   std::vector<NearestAnswer> nearest_answers_;
   std::vector<Shade> shades_;
   std::size_t shade_count_ = 0;
+  LightAims aims_;
   ReusedList<PendingLight> lights_;
   ReusedList<OcclusionQuery> shadow_queries_;
   std::vector<OcclusionAnswer> shadow_answers_;

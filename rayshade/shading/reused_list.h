@@ -14,7 +14,7 @@ class ReusedList {
   void clear() { size_ = 0; }
   /// One more, as it was left.
   T& add() {
-    if (size_ == records_.size()) records_.resize(std::max<std::size_t>(64, 2 * size_));
+    if (size_ == room_) records_.resize(room_ = std::max<std::size_t>(64, 2 * size_));
     return records_[size_++];
   }
   std::size_t size() const { return size_; }
@@ -27,6 +27,7 @@ class ReusedList {
  private:
   std::vector<T> records_;
   std::size_t size_ = 0;
+  std::size_t room_ = 0;  ///< records_.size(), which divides
 };
 
 }  // namespace rayshade

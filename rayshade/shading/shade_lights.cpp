@@ -33,93 +33,125 @@ double power(double base, unsigned exponent) {
 
 }  // namespace
 
-/// Sections 2.4 steps 1 and 2 and 4: which lights matter at which hit, and the shadow rays they need.
+/// What of a hit matters to its lights.
+struct RayTree::LitHit {
+  std::uint32_t shade;
+  bool answers_highlight, diffuse_black;
+};
+
+/// Sections 2.4 steps 1 and 2 and 4: which lights matter at which hit, and the shadow rays they need. Hits go
+/// by dozens, light by light.
 void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
                           std::span<const EyeSample> samples) {
   lights_.clear();
   shadow_queries_.clear();
   shadow_owner_.clear();
   any_highlight_ = false;
+  std::array<LitHit, LightAims::kMost> hits;
+  for (std::size_t first = 0; first < shade_count_; first += LightAims::kMost) {
+    const std::size_t count = aims_.count = std::min(LightAims::kMost, shade_count_ - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Shade& shade = shades_[first + i];
+      const Surface& surface = *shade.surface;
+      aims_.set_hit(i, shade.world.point, shade.world.normal, shade.mirror);
+      hits[i] = {static_cast<std::uint32_t>(first + i),
+                 surface.specular_exponent >= kEpsilon && !is_black(surface.specular),
+                 is_black(surface.diffuse)};
+    }
+    for (std::size_t l = first_light; l < last_light; ++l)
+      emit_light(static_cast<std::uint32_t>(l), std::span(hits).first(count), samples);
+  }
+}
+
+/// The two random numbers of a light at a hit.
+std::array<double, 2> RayTree::light_draws(const ShadingLight& light, const Node& node,
+                                           std::span<const EyeSample> samples) const {
+  const EyeSample& sample = samples[node.root];
+  const SampleNumbers numbers(*scene_.settings, scene_.frame, sample.x, sample.y, sample.sample);
+  return numbers.two_of_several(dimension(node.path, Purpose::kLight, light.sequence), light.turn,
+                                light.turns);
+}
+
+/// One light at the hits of aims_.
+void RayTree::emit_light(std::uint32_t number, std::span<const LitHit> hits,
+                         std::span<const EyeSample> samples) {
   const RenderSettings& settings = *scene_.settings;
   const Opacity mask =
       settings.transparent_shadows && scene_.compiled->has_transparent ? kOpaque : kAnyOpacity;
-  for (std::uint32_t s = 0; s < shade_count_; ++s) {
-    const Shade& shade = shades_[s];
-    const Node& node = nodes_[shade.node];
+  const ShadingLight& light = scene_.lights[number];
+  if (light.kind == LightKind::kArea) {
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const auto draws = light_draws(light, nodes_[shades_[hits[i].shade].node], samples);
+      aims_.set_place(i, area_place(light, draws[0], draws[1]));
+    }
+  }
+  aim_at(light, aims_);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const LitHit& hit = hits[i];
+    const Shade& shade = shades_[hit.shade];
     const WorldHit& world = shade.world;
     const Surface& surface = *shade.surface;
-    const EyeSample& sample = samples[node.root];
-    const bool answers_highlight = surface.specular_exponent >= kEpsilon && !is_black(surface.specular);
-    const bool diffuse_black = is_black(surface.diffuse);
-    for (std::size_t l = first_light; l < last_light; ++l) {
-      const ShadingLight& light = scene_.lights[l];
-      const SampleNumbers numbers(settings, scene_.frame, sample.x, sample.y, sample.sample);
-      const auto draw = [&] {
-        return numbers.two_of_several(dimension(node.path, Purpose::kLight, light.sequence), light.turn,
-                                      light.turns);
-      };
-      std::array<double, 2> draws{};
-      if (light.kind == LightKind::kArea) draws = draw();
-      const Illumination light_in = illuminate(light, world.point, draws[0], draws[1]);
-      double c = dot(light_in.direction, world.normal);
-      if (world.smooth && c <= 0) {
-        const double geometric = dot(light_in.direction, world.geometric_normal);
-        if (geometric > 0) c = geometric;
-      }
-      const double highlight = dot(shade.mirror, light_in.direction);
-      bool skipped = false;
-      if (!light_in.reaches) {
+    Vec3 direction = aims_.direction_of(i);
+    double far = aims_.distance[i];
+    double c = aims_.cosine[i];
+    if (world.smooth && c <= 0) {
+      const double geometric = dot(direction, world.geometric_normal);
+      if (geometric > 0) c = geometric;
+    }
+    const double highlight = aims_.highlight[i];
+    const double factor =
+        light.kind == LightKind::kSpot ? spot_factor(light, -dot(light.axis, direction)) : 1;
+    bool skipped = false;
+    if (!(far > 0) || factor == 0) {
+      ++counts_.skipped_dark_lights;
+      skipped = true;
+    } else if (c > 0) {
+      if (light.black || (hit.diffuse_black && !(hit.answers_highlight && highlight > 0))) {
         ++counts_.skipped_dark_lights;
         skipped = true;
-      } else if (c > 0) {
-        if (light.black || (diffuse_black && !(answers_highlight && highlight > 0))) {
-          ++counts_.skipped_dark_lights;
-          skipped = true;
-        }
-      } else if (surface.translucency < kEpsilon) {
-        ++counts_.skipped_back_lights;
-        skipped = true;
       }
-      if (skipped && !observer_) continue;
-      // Records are made where they stay: copies of fresh ones stall on their own stores.
-      PendingLight& pending = lights_.add();
-      pending.shade = s;
-      pending.light = static_cast<std::uint32_t>(l);
-      pending.cosine = c;
-      pending.highlight = highlight;
-      pending.color = light_in.color;
-      pending.blocked = pending.highlights = false;
-      pending.skipped = skipped;
-      if (skipped) continue;
-      pending.highlights = c > 0 ? answers_highlight && highlight > 0
-                                 : surface.transmitted_exponent >= kEpsilon && highlight < 0;
-      any_highlight_ |= pending.highlights;
-      if (!settings.shadows || light.no_shadow || surface.no_shadow) {
-        ++counts_.skipped_unshadowed;
-      } else {
-        ++counts_.shadow_rays;
-        Vec3 direction = light_in.direction;
-        double far = light_in.distance;
-        if (light.kind == LightKind::kExtended) {
-          draws = draw();
-          const Vec3 target = extended_target(light, world.point, sample.sample_number, settings.strata(),
-                                              draws[0], draws[1]);
-          far = length(target);
-          direction = target / far;
-        }
-        const RayStart start = shade.starts.toward(direction, 1, true);
-        OcclusionQuery& query = shadow_queries_.add();
-        query.ray.origin = start.origin;
-        query.ray.direction = direction;
-        query.ray.time = node.ray.time;
-        query.ray.unit = true;
-        query.lo = start.lo;
-        query.hi = far;
-        query.mask = mask;
-        query.light = static_cast<std::uint32_t>(l);
-        shadow_owner_.push_back(static_cast<std::uint32_t>(lights_.size() - 1));
-      }
+    } else if (surface.translucency < kEpsilon) {
+      ++counts_.skipped_back_lights;
+      skipped = true;
     }
+    if (skipped && !observer_) continue;
+    // Records are made where they stay: copies of fresh ones stall on their own stores.
+    PendingLight& pending = lights_.add();
+    pending.shade = hit.shade;
+    pending.light = number;
+    pending.cosine = far > 0 ? c : 0;
+    pending.highlight = highlight;
+    pending.color = light.kind == LightKind::kSpot ? light.intensity * factor : light.intensity;
+    pending.blocked = pending.highlights = false;
+    pending.skipped = skipped;
+    if (skipped) continue;
+    pending.highlights = c > 0 ? hit.answers_highlight && highlight > 0
+                               : surface.transmitted_exponent >= kEpsilon && highlight < 0;
+    any_highlight_ |= pending.highlights;
+    if (!settings.shadows || light.no_shadow || surface.no_shadow) {
+      ++counts_.skipped_unshadowed;
+      continue;
+    }
+    ++counts_.shadow_rays;
+    const Node& node = nodes_[shade.node];
+    if (light.kind == LightKind::kExtended) {
+      const auto draws = light_draws(light, node, samples);
+      const Vec3 target = extended_target(light, world.point, samples[node.root].sample_number,
+                                          settings.strata(), draws[0], draws[1]);
+      far = length(target);
+      direction = target / far;
+    }
+    const RayStart start = shade.starts.toward(direction, 1, true);
+    OcclusionQuery& query = shadow_queries_.add();
+    query.ray.origin = start.origin;
+    query.ray.direction = direction;
+    query.ray.time = node.ray.time;
+    query.ray.unit = true;
+    query.lo = start.lo;
+    query.hi = far;
+    query.mask = mask;
+    query.light = number;
+    shadow_owner_.push_back(static_cast<std::uint32_t>(lights_.size() - 1));
   }
 }
 
@@ -176,7 +208,7 @@ void RayTree::raise_highlights() {
   for (std::size_t k = 0; k < power_owner_.size(); ++k) lights_[power_owner_[k]].highlight = power_bases_[k];
 }
 
-/// Section 2.4 steps 3 and 4, in the fixed order of the lights.
+/// Section 2.4 steps 3 and 4, at every hit in the fixed order of the lights.
 void RayTree::combine_lights() {
   if (any_highlight_) raise_highlights();
   for (const PendingLight& pending : lights_) {

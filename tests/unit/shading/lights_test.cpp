@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "rayshade/shading/lights.h"
-
 #include <gtest/gtest.h>
 
 #include "rayshade/math/functions.h"
 #include "rayshade/shading/atmosphere.h"
+#include "rayshade/shading/light_aims.h"
+#include "tests/unit/fas/random_geometry.h"
+#include "tests/unit/fas/targets.h"
 
 namespace rayshade {
 namespace {
@@ -83,19 +84,70 @@ TEST(PrepareLightsTest, AreaLightsBecomeCellsOfEqualShare) {
   EXPECT_EQ(lights[0].position, (Vec3{3, 2, 1}));
   EXPECT_EQ(lights[5].position, (Vec3{1, 1, 1}));
   EXPECT_DOUBLE_EQ(lights[0].intensity.r, 1);
-  const Illumination middle = illuminate(lights[5], {1.5, 1.5, 0}, 0.5, 0.5);
-  EXPECT_EQ(middle.direction, (Vec3{0, 0, 1}));
-  EXPECT_DOUBLE_EQ(middle.distance, 1);
+  LightAims middle;
+  middle.count = 1;
+  middle.set_hit(0, {1.5, 1.5, 0}, {0, 0, 1}, {0, 0, 1});
+  middle.set_place(0, area_place(lights[5], 0.5, 0.5));
+  aim_at(lights[5], middle);
+  EXPECT_EQ(middle.direction_of(0), (Vec3{0, 0, 1}));
+  EXPECT_DOUBLE_EQ(middle.distance[0], 1);
 }
 
 TEST(PrepareLightsTest, ASceneWithoutLightsHasTheDefaultOne) {
   const auto lights = prepare_lights(Scene{}, RenderSettings{});
   ASSERT_EQ(lights.size(), 1u);
-  const Illumination light = illuminate(lights[0], {5, 6, 7}, 0, 0);
-  EXPECT_NEAR(light.direction.x, 1 / std::sqrt(3.0), 1e-15);
-  EXPECT_NEAR(light.direction.y, -1 / std::sqrt(3.0), 1e-15);
-  EXPECT_EQ(light.distance, kFar);
+  LightAims aims;
+  aims.count = 1;
+  aims.set_hit(0, {5, 6, 7}, {0, 0, 1}, {0, 0, 1});
+  aim_at(lights[0], aims);
+  EXPECT_NEAR(aims.direction[0][0], 1 / std::sqrt(3.0), 1e-15);
+  EXPECT_NEAR(aims.direction[1][0], -1 / std::sqrt(3.0), 1e-15);
+  EXPECT_EQ(aims.distance[0], kFar);
 }
+
+class LightAimsTest : public fas::test::TargetTest {};
+
+/// Every lane, on every processor, as the formulas give it for one hit.
+TEST_P(LightAimsTest, AreThoseOfSingleHits) {
+  fas::test::Dice dice(41);
+  const auto any = [&](double size) {
+    const fas::Point p = dice.in_box(size);
+    return Vec3{p[0], p[1], p[2]};
+  };
+  for (int round = 0; round < 200; ++round) {
+    ShadingLight light;
+    constexpr LightKind kKinds[] = {LightKind::kPoint, LightKind::kDirectional, LightKind::kSpot,
+                                    LightKind::kArea, LightKind::kExtended};
+    light.kind = kKinds[round % 5];
+    light.position = any(dice.size(-6, 6));
+    if (light.kind == LightKind::kDirectional) light.position = normalize(light.position);
+    LightAims aims;
+    aims.count = static_cast<std::size_t>(1 + dice.below(LightAims::kMost));
+    std::vector<Vec3> points, normals, mirrors, places;
+    for (std::size_t i = 0; i < aims.count; ++i) {
+      points.push_back(dice.below(20) ? any(dice.size(-6, 6)) : light.position);
+      normals.push_back(normalize(any(1)));
+      mirrors.push_back(any(1));
+      places.push_back(light.kind == LightKind::kArea ? light.position + any(1) : light.position);
+      aims.set_hit(i, points[i], normals[i], mirrors[i]);
+      if (light.kind == LightKind::kArea) aims.set_place(i, places[i]);
+    }
+    aim_at(light, aims);
+    for (std::size_t i = 0; i < aims.count; ++i) {
+      const bool directional = light.kind == LightKind::kDirectional;
+      const double distance = directional ? kFar : length(places[i] - points[i]);
+      ASSERT_EQ(aims.distance[i], distance);
+      if (distance == 0) continue;
+      const Vec3 direction = directional ? light.position : (places[i] - points[i]) / distance;
+      ASSERT_EQ(aims.direction_of(i), direction);
+      ASSERT_EQ(aims.cosine[i], dot(direction, normals[i]));
+      ASSERT_EQ(aims.highlight[i], dot(mirrors[i], direction));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, LightAimsTest, testing::ValuesIn(fas::test::targets()),
+                         fas::test::target_name);
 
 TEST(ExtendedTest, SamplesStratifyASquareFacingThePoint) {
   Light extended;
