@@ -20,7 +20,7 @@ struct Tracer::Parts {
   LeafGroups groups;
   std::vector<std::uint8_t> u, v;
   std::vector<double> depth;
-  std::vector<std::uint32_t> which, halves[2];
+  std::vector<std::uint32_t> which;
   std::vector<std::uint64_t> elsewhere;  ///< by class: rays that went to the hierarchy by choice
 
   template <class Job>
@@ -263,7 +263,7 @@ void Tracer::Parts::ask(RayClass number, Job& job) {
     tree(which);
     return;
   }
-  ask_by_choice(*rays.choice, which, halves, tree, [&](std::span<const std::uint32_t> some) {
+  ask_by_choice(*rays.choice, which, tree, [&](std::span<const std::uint32_t> some) {
     if (elsewhere.size() <= number.number) elsewhere.resize(number.number + 1);
     elsewhere[number.number] += some.size();
     for (const std::uint32_t i : some) through_hierarchy(job, i, {});

@@ -115,7 +115,7 @@ void ClassTracer::choose(std::span<const Query> queries, std::span<Answer> answe
   else if (always_)
     tree(which);
   else
-    fas::ask_by_choice(*choice_, which, batch.halves, tree, hierarchy);
+    fas::ask_by_choice(*choice_, which, tree, hierarchy);
 }
 
 template <class Query, class Answer>

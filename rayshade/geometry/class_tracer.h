@@ -26,7 +26,6 @@ struct Batch {
   std::vector<std::vector<std::uint32_t>> which;  ///< queries by class
   std::vector<std::uint8_t> u, v;
   std::vector<double> depth;  ///< rays from the apex: depth per t; rays toward it: where they start
-  std::vector<std::uint32_t> halves[2];       ///< of a group that goes both ways
   std::vector<HierarchyCounts> in_hierarchy;  ///< by class
   HierarchyCounts* counts = nullptr;          ///< of the class at hand
 };

@@ -241,13 +241,13 @@ TEST_F(ResumeTest, WhatChangedInALargeSceneIsNamed) {
   std::string text = kScene;
   for (int i = 0; i < 12'000; ++i)
     text += "sphere .001 " + std::to_string(i % 80 * .5) + " 9 " + std::to_string(i) + ".123456789\n";
-  scene("1500 1200", text);
+  scene("3000 2400", text);
   // Runs that are short for the size of their scene do not record it.
   const auto scene_recorded = [&] {
     return read_file(path("a.png.journal")).find("RSRc\x01\x04") != std::string::npos;
   };
   ASSERT_EQ(interrupt("-q -O a.png a.ray", SIGKILL, scene_recorded), 128 + SIGKILL);
-  scene("1500 1200", text.replace(text.find("4321.123"), 8, "4321.789"));
+  scene("3000 2400", text.replace(text.find("4321.123"), 8, "4321.789"));
   const Outcome out = go("-c -O a.png a.ray");
   EXPECT_EQ(out.status, 1);
   EXPECT_THAT(out.err,

@@ -207,60 +207,46 @@ TEST(BeamTree, IsGrownByManyThreadsAtOnce) {
 
 TEST(Choice, LeavesATreeThatIsSlowerAloneAndComesBack) {
   using Way = Choice::Way;
-  Choice choice(1e6, 1e6);
-  std::size_t through_tree = 0, rays = 0;
-  const auto run = [&](double tree, double hierarchy, int groups) {
-    through_tree = rays = 0;
+  /// The share of groups that go through the tree, where a ray takes so long either way.
+  const auto run = [](Choice& choice, double tree, double hierarchy, int groups, std::uint64_t making = 0) {
+    int through_tree = 0;
     for (int i = 0; i < groups; ++i) {
-      const Way way = choice.next(64);
-      rays += 64;
-      if (way == Way::kHierarchy) continue;
-      through_tree += way == Way::kTree ? 64 : 32;
-      choice.built(way == Way::kTree ? 64 : 32, 0);
-      if (way == Way::kBoth) choice.compared(32, 32 * tree, 32 * hierarchy, 0);
+      if (choice.next(64) == Way::kTree) {
+        choice.through_tree(64, 64 * tree + static_cast<double>(making), making);
+        ++through_tree;
+      } else {
+        choice.through_hierarchy(64, 64 * hierarchy);
+      }
     }
-    return static_cast<double>(through_tree) / static_cast<double>(rays);
+    return static_cast<double>(through_tree) / groups;
   };
-  EXPECT_GT(run(50, 100, 20'000), 0.9);
-  EXPECT_LT(run(400, 100, 20'000), 0.5);
+  Choice choice(1e6, 1e6);
+  EXPECT_GT(run(choice, 50, 100, 20'000), 0.9);
+  EXPECT_LT(run(choice, 400, 100, 20'000), 0.5);
   // It is given another try, more and more seldom.
-  EXPECT_GT(run(400, 100, 200'000), 0);
-  EXPECT_LT(run(400, 100, 200'000), 0.05);
+  EXPECT_GT(run(choice, 400, 100, 200'000), 0);
+  EXPECT_LT(run(choice, 400, 100, 200'000), 0.05);
+  EXPECT_GT(run(choice, 50, 100, 2'000'000), 0.4);
   // Where primitives are as many as rays, making a tree cannot pay, unless rays are costly; and not any more
   // where most rays have come.
   Choice crowded(1e6, 1e9);
   EXPECT_EQ(crowded.next(64), Way::kHierarchy);
-  crowded.plain(64, 64 * 100);
+  crowded.through_hierarchy(64, 64 * 100);
   EXPECT_EQ(crowded.next(64), Way::kHierarchy);
   Choice costly(1e6, 1e9);
-  costly.plain(64, 64 * 10'000);
-  EXPECT_NE(costly.next(64), Way::kHierarchy);
-  Choice early(1e6, 1e7), late(1e6, 1e7);
-  for (Choice* each : {&early, &late}) each->plain(64, 64 * 100);
-  EXPECT_NE(early.next(64), Way::kHierarchy);
+  costly.through_hierarchy(64, 64 * 40'000);
+  EXPECT_EQ(costly.next(64), Way::kTree);
+  Choice early(1e6, 2e6), late(1e6, 2e6);
+  for (Choice* each : {&early, &late}) each->through_hierarchy(64, 64 * 100);
+  EXPECT_EQ(early.next(64), Way::kTree);
   EXPECT_EQ(late.next(900'000), Way::kHierarchy);
   // What has been made is paid for: near the end a tree is kept for what its rays cost from now on.
-  Choice sunk(1e5, 2.5e6);
-  for (int i = 0; i < 1500; ++i) {
-    const Way way = sunk.next(64);
-    ASSERT_NE(way, Way::kHierarchy) << i;
-    const std::uint64_t making = i < 40 ? 64 * 1000 : 0;
-    sunk.built(64, making);
-    if (way == Way::kBoth)
-      sunk.compared(32, 32 * 60 + 0.5 * static_cast<double>(making), 32 * 100,
-                    0.5 * static_cast<double>(making));
-  }
+  Choice sunk(1e5, 2e5);
+  EXPECT_GT(run(sunk, 60, 100, 40, 64 * 100), 0.4);
+  EXPECT_GT(run(sunk, 60, 100, 1500), 0.9);
   // Building that never ends counts, too.
   Choice slow(1e4, 0);
-  int left = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const Way way = slow.next(64);
-    left += way == Way::kHierarchy;
-    if (way == Way::kHierarchy) continue;
-    slow.built(64, 64 * 1000);
-    if (way == Way::kBoth) slow.compared(32, 32 * 1050, 32 * 100, 32 * 1000);
-  }
-  EXPECT_GT(left, 800);
+  EXPECT_LT(run(slow, 50, 100, 2000, 64 * 1000), 0.6);
 }
 
 }  // namespace
