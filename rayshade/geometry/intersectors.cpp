@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 #include "rayshade/geometry/hierarchy_packs.h"
@@ -11,9 +12,26 @@
 namespace rayshade {
 namespace {
 
-/// Worlds of so few leaves are looped over by packs of rays: a vector test of every leaf costs less than
-/// finding out which to test.
+/// Worlds whose leaves cost no more than so many spheres are looped over by packs of rays: a vector test of
+/// every leaf costs less than finding out which to test.
+constexpr int kFewSpheres = 16;
+/// More leaves than this are never looped over.
 constexpr std::uint32_t kPackLeaves = 24;
+
+/// What the test of a leaf costs, about, in tests of spheres; of kinds worth a box, that of the box.
+int cost(LeafKind kind) {
+  switch (kind) {
+    case LeafKind::kPlane:
+    case LeafKind::kSphere:
+    case LeafKind::kDisc:
+      return 1;
+    case LeafKind::kCylinder:
+    case LeafKind::kCone:
+      return 3;
+    default:
+      return 2;
+  }
+}
 
 bool worth_a_box(LeafKind kind) {
   switch (kind) {
@@ -40,7 +58,9 @@ bool traces_in_packs(const CompiledScene& scene) {
   const Group& world = scene.groups[0];
   const auto first = scene.leaves.begin() + world.first, last = first + world.count;
   const auto slow = [&](const Leaf& leaf) { return !tested_in_packs(scene, leaf); };
-  return world.count <= kPackLeaves && std::count_if(first, last, slow) <= kSlowLeaves;
+  if (world.count > kPackLeaves || std::count_if(first, last, slow) > kSlowLeaves) return false;
+  const auto add = [](int sum, const Leaf& leaf) { return sum + cost(leaf.kind); };
+  return !world.hierarchy || std::accumulate(first, last, 0, add) <= kFewSpheres;
 }
 
 namespace {
