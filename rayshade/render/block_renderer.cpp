@@ -32,7 +32,7 @@ int BlockRenderer::chosen_sample(int x, int y) const {
 /// on their own stores.
 void BlockRenderer::take_sample(int x, int y, int k) {
   const RenderSettings& settings = *frame_.shading.settings;
-  EyeSample& out = samples_.emplace_back();
+  EyeSample& out = samples_.add();
   out.x = static_cast<std::uint32_t>(x);
   out.y = static_cast<std::uint32_t>(y);
   out.sample = static_cast<std::uint32_t>(k);
@@ -52,7 +52,8 @@ void BlockRenderer::take_sample(int x, int y, int k) {
 }
 
 void BlockRenderer::trace_range(std::size_t first, std::size_t count) {
-  tree_.trace(std::span(samples_).subspan(first, count), std::span(results_).subspan(first, count));
+  tree_.trace(std::span(samples_.begin(), samples_.end()).subspan(first, count),
+              std::span(results_).subspan(first, count));
 }
 
 /// Traces samples_ into results_; one by one and timed where costs are wanted.
@@ -130,20 +131,20 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
     full = choose_full(rect, colors, settings.contrast, settings.width, settings.height);
   }
 
-  std::size_t index = 0;
-  for (int y = rect.y0; y < rect.y1; ++y) {
-    for (int x = rect.x0; x < rect.x1; ++x, ++index) {
-      const std::size_t i = order.index(x, y);
-      const SampleResult& one = single[i];
-      store_pixel(&out.rgba[4 * index], one.color, one.hit && !frame_.sample_map ? 1.0 : 0.0);
-      if (layered) {
-        BlockPixels::Layer& layer = out.layers[index];
-        note_layer(one, layer);
-        layer.samples = 1;
-        add_cost(one, frame_.cost ? &single_costs_[i] : nullptr, layer);
-      }
+  std::size_t i = 0;
+  order.each([&](int x, int y) {
+    const std::size_t own = i++;
+    if (!rect.contains(x, y)) return;
+    const SampleResult& one = single[own];
+    const std::size_t index = rect.index(x, y);
+    store_pixel(&out.rgba[4 * index], one.color, one.hit && !frame_.sample_map ? 1.0 : 0.0);
+    if (layered) {
+      BlockPixels::Layer& layer = out.layers[index];
+      note_layer(one, layer);
+      layer.samples = 1;
+      add_cost(one, frame_.cost ? &single_costs_[own] : nullptr, layer);
     }
-  }
+  });
   if (!refine) {
     for (int y = rect.y0; y < rect.y1; ++y) {
       for (int x = rect.x0; x < rect.x1; ++x) {

@@ -12,6 +12,7 @@
 #include "rayshade/sampling/refine.h"
 #include "rayshade/sampling/stop.h"
 #include "rayshade/shading/ray_tree.h"
+#include "rayshade/shading/reused_list.h"
 
 namespace rayshade {
 
@@ -88,7 +89,7 @@ class BlockRenderer {
   const FrameScene& frame_;
   RayTree tree_;
   SamplingCounts counts_;
-  std::vector<EyeSample> samples_;
+  ReusedList<EyeSample> samples_;
   std::vector<SampleResult> results_, single_;
   /// Of one sample, beside what SampleResult counts.
   struct SampleCost {

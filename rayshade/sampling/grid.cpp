@@ -102,6 +102,11 @@ SampleGrid::SampleGrid(int samples_per_side, bool jitter, FilterKind kind, doubl
       jitter_(jitter),
       width_(width),
       weights_(filter_weights(samples_per_side, kind, width)),
-      numbers_(sample_numbers(samples_per_side)) {}
+      numbers_(sample_numbers(samples_per_side)) {
+  for (int k = 0; k < count(); ++k) {
+    corners_.push_back({-width / 2 + k % samples_per_side * width / samples_per_side,
+                        -width / 2 + k / samples_per_side * width / samples_per_side});
+  }
+}
 
 }  // namespace rayshade

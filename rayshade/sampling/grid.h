@@ -36,21 +36,18 @@ class SampleGrid {
   /// What to add to the coordinates of the pixel to get the screen point of sample k. `xi` and `zeta` in [0,
   /// 1) place it within its cell; they are not looked at without jitter, where it is on the low corner.
   std::array<double, 2> offset(int k, double xi, double zeta) const {
-    const int i = k % side_, j = k / side_;
-    return {along(i, xi), along(j, zeta)};
+    const std::array<double, 2>& low = corners_[static_cast<std::size_t>(k)];
+    if (!jitter_) return low;
+    return {low[0] + xi * width_ / side_, low[1] + zeta * width_ / side_};
   }
   double weight(int k) const { return weights_[static_cast<std::size_t>(k)]; }
   int sample_number(int k) const { return numbers_[static_cast<std::size_t>(k)]; }
 
  private:
-  double along(int cell, double random) const {
-    const double low = -width_ / 2 + cell * width_ / side_;
-    return jitter_ ? low + random * width_ / side_ : low;
-  }
-
   int side_;
   bool jitter_;
   double width_;
+  std::vector<std::array<double, 2>> corners_;  ///< the low one of each cell, relative to the pixel
   std::vector<double> weights_;
   std::vector<std::uint16_t> numbers_;
 };
