@@ -3,9 +3,10 @@
 // on it.
 #pragma once
 
+#include <time.h>
+
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -90,7 +91,7 @@ class Choice {
     const double making = early ? 0 : making_per_ray();
     if (making < 0) return;
     // Few comparisons are of few places, and of caches that are still cold.
-    const double doubt = compared < 4 * kTrial ? 1.1 : 1.02;
+    const double doubt = compared < 4 * kTrial ? 1.15 : 1.02;
     const double ratio = share(tree_ns_, timed_rays_) / std::max(share(hierarchy_ns_, compared_), 1e-3);
     if (ratio + making / plain_per_ray() > doubt) leave();
   }
@@ -124,7 +125,7 @@ class Choice {
   }
 
   /// Rays through the hierarchy, beside a tree, before the first judgement.
-  static constexpr std::uint64_t kTrial = 1024;
+  static constexpr std::uint64_t kTrial = 2048;
   /// Rays through the tree over which the cost of building is averaged.
   static constexpr std::uint64_t kWindow = 4096;
   /// Share of the expected rays before which what it takes to make nodes is not judged.
@@ -133,7 +134,7 @@ class Choice {
   static constexpr std::uint64_t kPause = 1 << 16;
   /// The share of its time through the hierarchy that a ray through the tree may save, before anything is
   /// known: most trees save nothing, some a third.
-  static constexpr double kHope = 0.03;
+  static constexpr double kHope = 0.02;
   /// Nanoseconds of a ray through the hierarchy, as long as nothing better is known.
   static constexpr double kTypical = 80;
   double expected_, making_;
@@ -145,13 +146,19 @@ class Choice {
   std::atomic<std::uint64_t> plain_rays_{0}, plain_ns_{0}, seen_{0}, again_{0};
 };
 
+/// Nanoseconds of processor time that this thread has taken: what others do meanwhile does not count.
+inline double thread_nanoseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e9 + static_cast<double>(now.tv_nsec);
+}
+
 /// Asks for a group of rays, numbered `which`, in the way that `choice` says. `tree(which)` answers them
 /// through the tree and returns the nanoseconds that it took to make nodes, `hierarchy(which)` through the
 /// hierarchy.
 template <class Tree, class Plain>
 void ask_by_choice(Choice& choice, std::span<const std::uint32_t> which, const Tree& tree,
                    const Plain& hierarchy) {
-  using Clock = std::chrono::steady_clock;
   const bool through_tree = choice.next(which.size()) == Choice::Way::kTree;
   if (which.size() < Choice::kFewest) {
     if (through_tree)
@@ -161,12 +168,12 @@ void ask_by_choice(Choice& choice, std::span<const std::uint32_t> which, const T
     return;
   }
   std::uint64_t making = 0;
-  const Clock::time_point start = Clock::now();
+  const double start = thread_nanoseconds();
   if (through_tree)
     making = tree(which);
   else
     hierarchy(which);
-  const double ns = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+  const double ns = thread_nanoseconds() - start;
   if (through_tree)
     choice.through_tree(which.size(), ns, making);
   else

@@ -234,16 +234,16 @@ TEST(Choice, LeavesATreeThatIsSlowerAloneAndComesBack) {
   crowded.through_hierarchy(64, 64 * 100);
   EXPECT_EQ(crowded.next(64), Way::kHierarchy);
   Choice costly(1e6, 1e9);
-  costly.through_hierarchy(64, 64 * 40'000);
+  costly.through_hierarchy(64, 64 * 60'000);
   EXPECT_EQ(costly.next(64), Way::kTree);
-  Choice early(1e6, 2e6), late(1e6, 2e6);
+  Choice early(1e6, 1e6), late(1e6, 1e6);
   for (Choice* each : {&early, &late}) each->through_hierarchy(64, 64 * 100);
   EXPECT_EQ(early.next(64), Way::kTree);
   EXPECT_EQ(late.next(900'000), Way::kHierarchy);
   // What has been made is paid for: near the end a tree is kept for what its rays cost from now on.
-  Choice sunk(1e5, 2e5);
-  EXPECT_GT(run(sunk, 60, 100, 40, 64 * 100), 0.4);
-  EXPECT_GT(run(sunk, 60, 100, 1500), 0.9);
+  Choice sunk(1e5, 1.5e5);
+  EXPECT_GT(run(sunk, 60, 100, 40, 64 * 75), 0.4);
+  EXPECT_GT(run(sunk, 60, 100, 1500), 0.8);
   // Building that never ends counts, too.
   Choice slow(1e4, 0);
   EXPECT_LT(run(slow, 50, 100, 2000, 64 * 1000), 0.6);
