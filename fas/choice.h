@@ -10,22 +10,28 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace fas {
 
 /// Whether the rays of a class go through its tree or through the hierarchy alone. A tree is started where
-/// what it may save of the rays still to come is worth more than to make it for all primitives. Some groups
-/// of rays go through the hierarchy even then, whole ones, since rays are traced together; all are timed, and
-/// groups one after the other cost alike on average. The tree is left alone, for three times as many rays as
-/// have come by then, when the rays still to come would cost more through it than through the hierarchy. What
-/// has been made by then is paid for either way; what will be made is expected to grow with the square root
-/// of the rays.
+/// the exact tests that it may spare the rays still to come are worth more than to make it for all
+/// primitives. Some groups of rays go through the hierarchy even then, whole ones, since rays are traced
+/// together; some of either kind are timed, and groups one after the other cost alike on average. The tree is
+/// left alone, for three times as many rays as have come by then, when the rays still to come would cost more
+/// through it than through the hierarchy. What has been made by then is paid for either way; what will be
+/// made is expected to grow with the square root of the rays.
 class Choice {
  public:
   enum class Way : std::uint8_t { kTree, kHierarchy };
-  /// Smaller groups are not worth reading the clock.
-  static constexpr std::size_t kFewest = 32;
+  /// What to do with a group: `timed` if the choice is to be told how long it took.
+  struct Turn {
+    Way way;
+    bool timed;
+  };
+  /// Smaller groups are not worth reading the clock, which takes a microsecond.
+  static constexpr std::size_t kFewest = 64;
   /// Nanoseconds to make a tree, by its primitives. An order of magnitude: what is far away is never opened,
   /// what is near is handed on again and again; measured from 0.2 to 2.5 times as much.
   static constexpr double kMakePrimitive = 1000;
@@ -36,23 +42,30 @@ class Choice {
   Choice(double rays, double making) : expected_(std::max(rays, 1.0)), making_(making) {}
 
   /// For the next group, of so many rays.
-  Way next(std::size_t rays) {
+  Turn next(std::size_t rays) {
     const std::uint64_t seen = add(seen_, rays);
+    const bool enough = rays >= kFewest;
     if (!tree_mode_.load(std::memory_order_relaxed)) {
-      if (seen < again_.load(std::memory_order_relaxed) || !worth_starting()) return Way::kHierarchy;
+      if (seen < again_.load(std::memory_order_relaxed) || !worth_starting()) {
+        const bool known = plain_rays_.load(std::memory_order_relaxed) > kKnown;
+        return {Way::kHierarchy,
+                enough && (!known || turn_.fetch_add(1, std::memory_order_relaxed) % 16 == 0)};
+      }
       tree_mode_.store(true, std::memory_order_relaxed);
     }
-    if (rays < kFewest) return Way::kTree;
+    if (!enough) return {Way::kTree, false};
     const std::uint64_t compared = compared_.load(std::memory_order_relaxed);
     const std::uint32_t every = compared < kTrial ? 2 : compared < 4 * kTrial ? 8 : 32;
-    return turn_.fetch_add(1, std::memory_order_relaxed) % every == 1 ? Way::kHierarchy : Way::kTree;
+    const std::uint32_t turn = turn_.fetch_add(1, std::memory_order_relaxed) % every;
+    return {turn == 1 ? Way::kHierarchy : Way::kTree, turn < 8};
   }
 
-  /// After a group went through the tree, in so many nanoseconds, `making` of which it took to make nodes.
-  void through_tree(std::size_t rays, double ns, std::uint64_t making) {
-    if (rays >= kFewest) {
+  /// After a group went through the tree: it took `making` nanoseconds to make nodes, and, if it was timed,
+  /// `ns` in all.
+  void through_tree(std::size_t rays, std::uint64_t making, std::optional<double> ns) {
+    if (ns) {
       add(timed_rays_, rays);
-      add(tree_ns_, static_cast<std::uint64_t>(std::max(ns - static_cast<double>(making), 0.0)));
+      add(tree_ns_, static_cast<std::uint64_t>(std::max(*ns - static_cast<double>(making), 0.0)));
     }
     add(all_tree_rays_, rays);
     // What was expected to be made at first tells nothing of what will be made.
@@ -66,8 +79,10 @@ class Choice {
     tree_rays_.store(0, std::memory_order_relaxed);
     building_.store(0, std::memory_order_relaxed);
   }
-  /// After a group of at least kFewest rays went through the hierarchy, in so many nanoseconds.
-  void through_hierarchy(std::size_t rays, double ns) {
+  /// After a group that was timed went through the hierarchy, in so many nanoseconds, with so many exact
+  /// tests.
+  void through_hierarchy(std::size_t rays, double ns, std::uint64_t tests) {
+    add(plain_tests_, tests);
     add(plain_rays_, rays);
     add(plain_ns_, static_cast<std::uint64_t>(ns));
     if (!tree_mode_.load(std::memory_order_relaxed)) return;
@@ -105,7 +120,16 @@ class Choice {
     const auto seen = static_cast<double>(seen_.load(std::memory_order_relaxed));
     return seen < expected_ ? expected_ - seen : seen;
   }
-  bool worth_starting() const { return to_come() * kHope * plain_per_ray() >= making_; }
+  /// Nanoseconds that a ray through the tree may save.
+  double hope() const {
+    if (plain_rays_.load(std::memory_order_relaxed) == 0) return 0;
+    const double tests = share(plain_tests_, plain_rays_);
+    return tests > kNeeded ? kSpared * plain_per_ray() * (1 - kNeeded / tests) : 0;
+  }
+  bool worth_starting() const {
+    const double saved = hope();
+    return saved > 0 && to_come() * saved >= making_;
+  }
   /// Nanoseconds a ray that making nodes will take, on average over the rays still to come; negative:
   /// unknown. With a cost of all nodes of c sqrt(n) at n rays, the latest ray takes c / (2 sqrt(n)).
   double making_per_ray() const {
@@ -124,6 +148,8 @@ class Choice {
     tree_mode_.store(false, std::memory_order_relaxed);
   }
 
+  /// Rays after which it is known what one through the hierarchy takes, about.
+  static constexpr std::uint64_t kKnown = 1 << 14;
   /// Rays through the hierarchy, beside a tree, before the first judgement.
   static constexpr std::uint64_t kTrial = 2048;
   /// Rays through the tree over which the cost of building is averaged.
@@ -132,9 +158,8 @@ class Choice {
   static constexpr double kEarly = 1.0 / 32;
   /// The shortest time, in rays, that a tree is left alone.
   static constexpr std::uint64_t kPause = 1 << 16;
-  /// The share of its time through the hierarchy that a ray through the tree may save, before anything is
-  /// known: most trees save nothing, some a third.
-  static constexpr double kHope = 0.02;
+  /// Trees spare exact tests, down to about so many a ray; and with all of them so large a share of its time.
+  static constexpr double kNeeded = 1.5, kSpared = 0.25;
   /// Nanoseconds of a ray through the hierarchy, as long as nothing better is known.
   static constexpr double kTypical = 80;
   double expected_, making_;
@@ -143,7 +168,7 @@ class Choice {
   std::atomic<std::uint32_t> turn_{0};
   std::atomic<std::uint64_t> compared_{0}, timed_rays_{0}, tree_ns_{0}, hierarchy_ns_{0}, tree_rays_{0},
       building_{0}, all_building_{0}, all_tree_rays_{0};
-  std::atomic<std::uint64_t> plain_rays_{0}, plain_ns_{0}, seen_{0}, again_{0};
+  std::atomic<std::uint64_t> plain_rays_{0}, plain_ns_{0}, plain_tests_{0}, seen_{0}, again_{0};
 };
 
 /// Nanoseconds of processor time that this thread has taken: what others do meanwhile does not count.
@@ -155,29 +180,22 @@ inline double thread_nanoseconds() {
 
 /// Asks for a group of rays, numbered `which`, in the way that `choice` says. `tree(which)` answers them
 /// through the tree and returns the nanoseconds that it took to make nodes, `hierarchy(which)` through the
-/// hierarchy.
-template <class Tree, class Plain>
+/// hierarchy and returns the exact tests that it took; `later(which)` may do so later, together with others.
+template <class Tree, class Plain, class Later>
 void ask_by_choice(Choice& choice, std::span<const std::uint32_t> which, const Tree& tree,
-                   const Plain& hierarchy) {
-  const bool through_tree = choice.next(which.size()) == Choice::Way::kTree;
-  if (which.size() < Choice::kFewest) {
-    if (through_tree)
-      choice.through_tree(which.size(), 0, tree(which));
-    else
-      hierarchy(which);
-    return;
+                   const Plain& hierarchy, const Later& later) {
+  const Choice::Turn turn = choice.next(which.size());
+  const double start = turn.timed ? thread_nanoseconds() : 0;
+  const auto taken = [&] { return thread_nanoseconds() - start; };
+  if (turn.way == Choice::Way::kTree) {
+    const std::uint64_t making = tree(which);
+    choice.through_tree(which.size(), making, turn.timed ? std::optional(taken()) : std::nullopt);
+  } else if (turn.timed) {
+    const std::uint64_t tests = hierarchy(which);
+    choice.through_hierarchy(which.size(), taken(), tests);
+  } else {
+    later(which);
   }
-  std::uint64_t making = 0;
-  const double start = thread_nanoseconds();
-  if (through_tree)
-    making = tree(which);
-  else
-    hierarchy(which);
-  const double ns = thread_nanoseconds() - start;
-  if (through_tree)
-    choice.through_tree(which.size(), ns, making);
-  else
-    choice.through_hierarchy(which.size(), ns);
 }
 
 }  // namespace fas

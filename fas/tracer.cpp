@@ -263,11 +263,14 @@ void Tracer::Parts::ask(RayClass number, Job& job) {
     tree(which);
     return;
   }
-  ask_by_choice(*rays.choice, which, tree, [&](std::span<const std::uint32_t> some) {
+  const auto hierarchy = [&](std::span<const std::uint32_t> some) {
     if (elsewhere.size() <= number.number) elsewhere.resize(number.number + 1);
     elsewhere[number.number] += some.size();
+    const std::uint64_t before = job.tests;
     for (const std::uint32_t i : some) through_hierarchy(job, i, {});
-  });
+    return job.tests - before;
+  };
+  ask_by_choice(*rays.choice, which, tree, hierarchy, hierarchy);
 }
 
 Tracer::Tracer(const Structure& structure) : parts_(std::make_unique<Parts>(*structure.parts_)) {}

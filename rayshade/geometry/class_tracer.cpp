@@ -108,23 +108,49 @@ void ClassTracer::choose(std::span<const Query> queries, std::span<Answer> answe
     return ask_tree(queries, answers, some, state, batch, scratch);
   };
   const auto hierarchy = [&](std::span<const std::uint32_t> some) {
-    ask_hierarchy(queries, answers, some, batch, scratch);
+    return ask_hierarchy(queries, answers, some, batch, scratch);
+  };
+  const auto later = [&](std::span<const std::uint32_t> some) {
+    batch.rest.insert(batch.rest.end(), some.begin(), some.end());
+    batch.rest_of_classes.push_back({batch.rest.size(), batch.counts});
   };
   if (!choice_)
-    hierarchy(which);
+    later(which);
   else if (always_)
     tree(which);
   else
-    fas::ask_by_choice(*choice_, which, tree, hierarchy);
+    fas::ask_by_choice(*choice_, which, tree, hierarchy, later);
 }
 
 template <class Query, class Answer>
-void ClassTracer::ask_hierarchy(std::span<const Query> queries, std::span<Answer> answers,
-                                std::span<const std::uint32_t> which, Batch& batch,
-                                TraceScratch& scratch) const {
+void ask_rest(const CompiledScene& scene, std::span<const Query> queries, std::span<Answer> answers,
+              Batch& batch, TraceScratch& scratch) {
+  if (batch.rest.empty()) return;
+  HierarchyPacks(scene, scratch).ask(queries, answers, batch.rest);
+  std::size_t k = 0;
+  for (const Batch::RestOfClass& part : batch.rest_of_classes) {
+    for (; k < part.end; ++k) {
+      const Answer& answer = answers[batch.rest[k]];
+      part.counts->add({1, answer.tests, answer.bounds_tests});
+    }
+  }
+  batch.rest.clear();
+  batch.rest_of_classes.clear();
+}
+template void ask_rest(const CompiledScene&, std::span<const NearestQuery>, std::span<NearestAnswer>, Batch&,
+                       TraceScratch&);
+template void ask_rest(const CompiledScene&, std::span<const OcclusionQuery>, std::span<OcclusionAnswer>,
+                       Batch&, TraceScratch&);
+
+template <class Query, class Answer>
+std::uint64_t ClassTracer::ask_hierarchy(std::span<const Query> queries, std::span<Answer> answers,
+                                         std::span<const std::uint32_t> which, Batch& batch,
+                                         TraceScratch& scratch) const {
   HierarchyPacks packs(scene_, scratch);
   packs.ask(queries, answers, which);
+  const std::uint64_t before = batch.counts->tests;
   for (const std::uint32_t i : which) batch.counts->add({1, answers[i].tests, answers[i].bounds_tests});
+  return batch.counts->tests - before;
 }
 
 template <class Query, class Answer>

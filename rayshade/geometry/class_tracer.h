@@ -28,6 +28,13 @@ struct Batch {
   std::vector<double> depth;  ///< rays from the apex: depth per t; rays toward it: where they start
   std::vector<HierarchyCounts> in_hierarchy;  ///< by class
   HierarchyCounts* counts = nullptr;          ///< of the class at hand
+  /// Queries of all classes that go through the hierarchy together; and where those of a class end in them.
+  std::vector<std::uint32_t> rest;
+  struct RestOfClass {
+    std::size_t end;
+    HierarchyCounts* counts;
+  };
+  std::vector<RestOfClass> rest_of_classes;
 };
 
 class ClassTracer {
@@ -42,7 +49,8 @@ class ClassTracer {
   /// Rays with extent in space. Nearest queries are placed by their start, occlusion queries by their end.
   ClassTracer(const CompiledScene& scene, std::unique_ptr<fas::BeamTree> tree, double expected, bool always);
 
-  /// Answers the queries of the class, which are those numbered `which`, in rising order.
+  /// Answers the queries of the class, which are those numbered `which`, in rising order, or leaves them to
+  /// ask_rest().
   void ask(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
            std::span<const std::uint32_t> which, fas::ThreadState& state, Batch& batch,
            TraceScratch& scratch) const;
@@ -65,8 +73,9 @@ class ClassTracer {
                          std::span<const std::uint32_t> which, fas::ThreadState& state, Batch& batch,
                          TraceScratch& scratch) const;
   template <class Query, class Answer>
-  void ask_hierarchy(std::span<const Query> queries, std::span<Answer> answers,
-                     std::span<const std::uint32_t> which, Batch& batch, TraceScratch& scratch) const;
+  std::uint64_t ask_hierarchy(std::span<const Query> queries, std::span<Answer> answers,
+                              std::span<const std::uint32_t> which, Batch& batch,
+                              TraceScratch& scratch) const;
   template <class Query, class Answer>
   void ask_hierarchy(const Query& query, Answer& answer, Batch& batch, TraceScratch& scratch) const;
   template <class Query, class Answer>
@@ -93,5 +102,10 @@ class ClassTracer {
   std::unique_ptr<fas::Choice> choice_;  ///< with a tree only
   bool from_apex_ = false, always_ = false;
 };
+
+/// Answers what ask() of the classes has left for later (Batch::rest).
+template <class Query, class Answer>
+void ask_rest(const CompiledScene& scene, std::span<const Query> queries, std::span<Answer> answers,
+              Batch& batch, TraceScratch& scratch);
 
 }  // namespace rayshade

@@ -162,6 +162,7 @@ class FasIntersector final : public Intersector {
         classes_[c].ask(some, answers.subspan(first, count), batch.which[c], *scratch.trees, batch, scratch);
         batch.which[c].clear();
       }
+      ask_rest(scene_, some, answers.subspan(first, count), batch, scratch);
     }
   }
 

@@ -211,11 +211,13 @@ TEST(Choice, LeavesATreeThatIsSlowerAloneAndComesBack) {
   const auto run = [](Choice& choice, double tree, double hierarchy, int groups, std::uint64_t making = 0) {
     int through_tree = 0;
     for (int i = 0; i < groups; ++i) {
-      if (choice.next(64) == Way::kTree) {
-        choice.through_tree(64, 64 * tree + static_cast<double>(making), making);
+      const Choice::Turn turn = choice.next(64);
+      if (turn.way == Way::kTree) {
+        const double ns = 64 * tree + static_cast<double>(making);
+        choice.through_tree(64, making, turn.timed ? std::optional(ns) : std::nullopt);
         ++through_tree;
-      } else {
-        choice.through_hierarchy(64, 64 * hierarchy);
+      } else if (turn.timed) {
+        choice.through_hierarchy(64, 64 * hierarchy, 64 * 4);
       }
     }
     return static_cast<double>(through_tree) / groups;
@@ -230,16 +232,20 @@ TEST(Choice, LeavesATreeThatIsSlowerAloneAndComesBack) {
   // Where primitives are as many as rays, making a tree cannot pay, unless rays are costly; and not any more
   // where most rays have come.
   Choice crowded(1e6, 1e9);
-  EXPECT_EQ(crowded.next(64), Way::kHierarchy);
-  crowded.through_hierarchy(64, 64 * 100);
-  EXPECT_EQ(crowded.next(64), Way::kHierarchy);
+  EXPECT_EQ(crowded.next(64).way, Way::kHierarchy);
+  crowded.through_hierarchy(64, 64 * 100, 64 * 4);
+  EXPECT_EQ(crowded.next(64).way, Way::kHierarchy);
   Choice costly(1e6, 1e9);
-  costly.through_hierarchy(64, 64 * 60'000);
-  EXPECT_EQ(costly.next(64), Way::kTree);
-  Choice early(1e6, 1e6), late(1e6, 1e6);
-  for (Choice* each : {&early, &late}) each->through_hierarchy(64, 64 * 100);
-  EXPECT_EQ(early.next(64), Way::kTree);
-  EXPECT_EQ(late.next(900'000), Way::kHierarchy);
+  costly.through_hierarchy(64, 64 * 60'000, 64 * 4);
+  EXPECT_EQ(costly.next(64).way, Way::kTree);
+  Choice early(1e6, 5e6), late(1e6, 5e6);
+  for (Choice* each : {&early, &late}) each->through_hierarchy(64, 64 * 100, 64 * 4);
+  EXPECT_EQ(early.next(64).way, Way::kTree);
+  EXPECT_EQ(late.next(900'000).way, Way::kHierarchy);
+  // Nor where rays make hardly a test too many.
+  Choice frugal(1e6, 0);
+  frugal.through_hierarchy(64, 64 * 100, 64);
+  EXPECT_EQ(frugal.next(64).way, Way::kHierarchy);
   // What has been made is paid for: near the end a tree is kept for what its rays cost from now on.
   Choice sunk(1e5, 1.5e5);
   EXPECT_GT(run(sunk, 60, 100, 40, 64 * 75), 0.4);
