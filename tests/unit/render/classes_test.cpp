@@ -43,7 +43,10 @@ TEST(ClassReportTest, RaysOfAllClassesAreTheQueriesOfTheRenderer) {
       const RenderStatistics& s = rendered.statistics();
       ASSERT_EQ(s.intersector.method, Method::kTrees);
       EXPECT_EQ(queries(s), s.shading.queries()) << view;
-      EXPECT_GT(in_trees(s), 0u);
+      // Otherwise the choice is the clock's.
+      if (options.fas_split == fas::Split::kAlways) {
+        EXPECT_GT(in_trees(s), 0u);
+      }
       for (const ClassReport& c : s.intersector.classes) {
         EXPECT_GE(c.in_hierarchy.rays, c.left_by_place());
         EXPECT_LE(c.in_tree.cached_leaf + c.in_tree.outside, c.in_tree.rays + c.in_tree.elsewhere);
@@ -132,7 +135,9 @@ TEST(CostMapTest, PixelsAddUpToTheStatistics) {
     EXPECT_EQ(rendered.sum_of("rays"), static_cast<double>(s.shading.queries()));
     EXPECT_EQ(rendered.sum_of("tree_rays"), static_cast<double>(in_trees(s)));
     const std::uint64_t leaf_tests = sum(s, [](const ClassReport& c) { return c.in_tree.tests; });
-    EXPECT_GT(leaf_tests, s.trace.total_tests() / 4);
+    if (split == fas::Split::kAlways) {
+      EXPECT_GT(leaf_tests, s.trace.total_tests() / 4);
+    }
   }
 }
 
