@@ -159,7 +159,7 @@ class Choice {
   /// The shortest time, in rays, that a tree is left alone.
   static constexpr std::uint64_t kPause = 1 << 16;
   /// Trees spare exact tests, down to about so many a ray; and with all of them so large a share of its time.
-  static constexpr double kNeeded = 1.5, kSpared = 0.25;
+  static constexpr double kNeeded = 2, kSpared = 0.25;
   /// Nanoseconds of a ray through the hierarchy, as long as nothing better is known.
   static constexpr double kTypical = 80;
   double expected_, making_;

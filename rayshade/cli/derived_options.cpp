@@ -26,6 +26,7 @@ RenderOptions rendering_options(const Options& options, int share) {
   out.fas_memory = (options.fas_memory > 0 ? options.fas_memory : available_memory() / 4) /
                    static_cast<std::uint64_t>(std::max(share, 1));
   out.fas_split = options.fas_split;
+  out.fas_choose = !options.fas_dump;  // what is to be drawn must be there
   out.verify = options.verify;
   out.layers = options.layers.has_value();
   out.cost = options.cost_map.has_value();

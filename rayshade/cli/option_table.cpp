@@ -463,16 +463,16 @@ std::vector<OptionSpec> make_table() {
        "last counts.",
        [](Options& o, Values v) { o.block_costs = v[0]; },
        {"FILE"}});
-  t.push_back({0,
-               "fas-dump",
-               {"FILE.svg"},
-               kReport,
-               "Draw the tree of eye rays over the picture: every cell of its subdivision, shaded by the "
-               "number of objects to "
-               "be tested there. Refused where there is no such tree: with a lens, few objects, or another "
-               "intersector.",
-               [](Options& o, Values v) { o.fas_dump = v[0]; },
-               {"FILE"}});
+  t.push_back(
+      {0,
+       "fas-dump",
+       {"FILE.svg"},
+       kReport,
+       "Draw the tree of eye rays over the picture: every cell of its subdivision, shaded by the "
+       "number of objects to be tested there. All rays go through trees then, even where that is "
+       "slower. Refused where there is no such tree: with a lens, few objects, or another intersector.",
+       [](Options& o, Values v) { o.fas_dump = v[0]; },
+       {"FILE"}});
   t.push_back({0,
                "explain",
                {"X", "Y"},

@@ -129,10 +129,12 @@ void ask_rest(const CompiledScene& scene, std::span<const Query> queries, std::s
   HierarchyPacks(scene, scratch).ask(queries, answers, batch.rest);
   std::size_t k = 0;
   for (const Batch::RestOfClass& part : batch.rest_of_classes) {
+    HierarchyCounts sum;
     for (; k < part.end; ++k) {
       const Answer& answer = answers[batch.rest[k]];
-      part.counts->add({1, answer.tests, answer.bounds_tests});
+      sum.add({1, answer.tests, answer.bounds_tests});
     }
+    part.counts->add(sum);
   }
   batch.rest.clear();
   batch.rest_of_classes.clear();

@@ -98,6 +98,7 @@ FasOptions Renderer::fas_options() const {
   for (const ShadingLight& light : frame_.shading.lights) options.lights.push_back(shadow_class(light));
   options.memory = options_.fas_memory > 0 ? options_.fas_memory : available_memory() / 4;
   options.split = options_.fas_split;
+  options.choose = options_.fas_choose;
   options.rays = static_cast<double>(settings_.window_width()) * settings_.window_height() *
                  settings_.samples * settings_.samples;
   return options;

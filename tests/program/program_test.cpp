@@ -215,6 +215,8 @@ TEST_F(ProgramTest, TheEyeTreeIsDrawnAsSvg) {
     EXPECT_EQ(drawn + outside, cells);
   }
   ASSERT_EQ(go("-q --fas-dump t.svg -e -O a.rle", many_spheres("")).status, 0);
+  // There is a tree to be drawn, even where it does not pay.
+  EXPECT_THAT(read_file(path("t.svg")), testing::ContainsRegex("<desc>[1-9][0-9]* cells"));
   EXPECT_THAT(read_file(path("t.svg")), HasSubstr("cannot be shown"));
   // Each eye of a stereo pair has a tree, and each frame a drawing.
   EXPECT_EQ(go("-q --fas-dump t.svg -l -E .2 -O a.png", many_spheres("")).status, 0);

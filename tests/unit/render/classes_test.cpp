@@ -81,7 +81,9 @@ TEST(ClassReportTest, EveryLightHasItsName) {
 }
 
 TEST(ClassReportTest, FramesAddUpAndMemoryIsReported) {
-  Rendered rendered(crowd(kPlain), {});
+  RenderOptions usual;
+  usual.fas_split = fas::Split::kAlways;
+  Rendered rendered(crowd(kPlain), usual);
   const std::uint64_t one = queries(rendered.statistics());
   const std::atomic<bool> stop{false};
   rendered.picture.clear();
@@ -93,7 +95,7 @@ TEST(ClassReportTest, FramesAddUpAndMemoryIsReported) {
   EXPECT_GE(s.intersector.pool_held, s.intersector.pool_used);
   EXPECT_GE(s.intersector.pool_budget, s.intersector.pool_held);
   EXPECT_FALSE(s.intersector.pool_exhausted);
-  RenderOptions none;
+  RenderOptions none = usual;
   none.fas_memory = 1;
   const Rendered starved(crowd(kPlain), none);
   EXPECT_TRUE(starved.statistics().intersector.pool_exhausted);
