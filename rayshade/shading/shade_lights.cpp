@@ -39,8 +39,8 @@ struct RayTree::LitHit {
   bool answers_highlight, diffuse_black;
 };
 
-/// Sections 2.4 steps 1 and 2 and 4: which lights matter at which hit, and the shadow rays they need. Hits go 64
-/// at a time, light by light.
+/// Sections 2.4 steps 1 and 2 and 4: which lights matter at which hit, and the shadow rays they need. Hits go
+/// 64 at a time, light by light.
 void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
                           std::span<const EyeSample> samples) {
   lights_.clear();
