@@ -16,12 +16,12 @@
 namespace fas {
 
 /// Whether the rays of a class go through its tree or through the hierarchy alone. A tree is started where
-/// the exact tests that it may spare the rays still to come are worth more than to make it for all
-/// primitives. Some groups of rays go through the hierarchy even then, whole ones, since rays are traced
-/// together; some of either kind are timed, and groups one after the other cost alike on average. The tree is
-/// left alone, for three times as many rays as have come by then, when the rays still to come would cost more
-/// through it than through the hierarchy. What has been made by then is paid for either way; what will be
-/// made is expected to grow with the square root of the rays.
+/// what it may save the rays still to come is worth more than to make it for all primitives. Some groups of
+/// rays go through the hierarchy even then, whole ones, since rays are traced together; some of either kind
+/// are timed, and groups one after the other cost alike on average. The tree is left alone, for three times
+/// as many rays as have come by then, when the rays still to come would cost more through it than through the
+/// hierarchy. What has been made by then is paid for either way; what will be made is expected to grow with
+/// the square root of the rays.
 class Choice {
  public:
   enum class Way : std::uint8_t { kTree, kHierarchy };
@@ -36,10 +36,18 @@ class Choice {
   /// what is near is handed on again and again; measured from 0.2 to 2.5 times as much.
   static constexpr double kMakePrimitive = 1000;
 
+  /// What a tree may save of the time of a ray through the hierarchy: `share` of it, as far as the ray makes
+  /// more exact tests than `needed`. 0: whatever it makes, and before anything is known.
+  struct Saving {
+    double share;
+    double needed;
+  };
+
   /// `rays`: how many of this class are expected. `making`: nanoseconds that making a tree may take, as far
   /// as it does not depend on how many rays come: primitives times kMakePrimitive, or 0 for trees that start
   /// with next to nothing.
-  Choice(double rays, double making) : expected_(std::max(rays, 1.0)), making_(making) {}
+  Choice(double rays, double making, Saving saving)
+      : expected_(std::max(rays, 1.0)), making_(making), saving_(saving) {}
 
   /// For the next group, of so many rays.
   Turn next(std::size_t rays) {
@@ -122,9 +130,9 @@ class Choice {
   }
   /// Nanoseconds that a ray through the tree may save.
   double hope() const {
-    if (plain_rays_.load(std::memory_order_relaxed) == 0) return 0;
+    if (saving_.needed <= 0) return saving_.share * plain_per_ray();
     const double tests = share(plain_tests_, plain_rays_);
-    return tests > kNeeded ? kSpared * plain_per_ray() * (1 - kNeeded / tests) : 0;
+    return tests > saving_.needed ? saving_.share * plain_per_ray() * (1 - saving_.needed / tests) : 0;
   }
   bool worth_starting() const {
     const double saved = hope();
@@ -158,11 +166,10 @@ class Choice {
   static constexpr double kEarly = 1.0 / 32;
   /// The shortest time, in rays, that a tree is left alone.
   static constexpr std::uint64_t kPause = 1 << 16;
-  /// Trees spare exact tests, down to about so many a ray; and with all of them so large a share of its time.
-  static constexpr double kNeeded = 2, kSpared = 0.25;
   /// Nanoseconds of a ray through the hierarchy, as long as nothing better is known.
-  static constexpr double kTypical = 80;
+  static constexpr double kTypical = 120;
   double expected_, making_;
+  Saving saving_;
   std::atomic<bool> tree_mode_{false};
   std::atomic<double> building_per_ray_{-1};  ///< of the latest window
   std::atomic<std::uint32_t> turn_{0};

@@ -13,6 +13,9 @@ namespace {
 
 using Place = fas::HyperTree::Place;
 
+/// Rays go through the hierarchy in packs, so that boxes cost little: trees spare them exact tests.
+constexpr fas::Choice::Saving kSaving{0.25, 2};
+
 std::size_t mask_number(Opacity mask) { return static_cast<std::size_t>(mask) - 1; }
 
 bool has_hit(const NearestAnswer& answer) { return answer.found; }
@@ -77,7 +80,8 @@ ClassTracer::ClassTracer(const CompiledScene& scene, std::unique_ptr<fas::HyperT
                          double expected, bool always)
     : scene_(scene),
       flat_(std::move(tree)),
-      choice_(std::make_unique<fas::Choice>(expected, fas::Choice::kMakePrimitive * scene.groups[0].count)),
+      choice_(std::make_unique<fas::Choice>(expected, fas::Choice::kMakePrimitive * scene.groups[0].count,
+                                            kSaving)),
       from_apex_(from_apex),
       always_(always) {}
 
@@ -85,7 +89,7 @@ ClassTracer::ClassTracer(const CompiledScene& scene, std::unique_ptr<fas::BeamTr
                          bool always)
     : scene_(scene),
       beams_(std::move(tree)),
-      choice_(std::make_unique<fas::Choice>(expected, 0)),
+      choice_(std::make_unique<fas::Choice>(expected, 0, kSaving)),
       always_(always) {}
 
 void ClassTracer::ask(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,

@@ -186,9 +186,7 @@ TEST(Structure, AnswersAsTestingEverything) {
 }
 
 TEST(Structure, IsUsedByManyThreadsAtOnce) {
-  Options options;
-  options.always_split = true;  // otherwise the choice whether there are trees is the clock's
-  Scene scene(77, options);
+  Scene scene(77, {});
   std::vector<Ray> rays;
   for (int i = 0; i < 3000; ++i) rays.push_back(scene.ray(static_cast<std::size_t>(i) / 500));
   std::vector<Hit> truth;
