@@ -38,7 +38,8 @@ struct BoxProbe {
   double scale = 1;  ///< distance in the scaled space = (t - entry) * scale
 
   /// The far limit `t` in the scaled space, rounded up.
-  float limit(double t) const {
+  float limit(double t) const { return limit(t, entry, scale, slack); }
+  static float limit(double t, double entry, double scale, float slack) {
     const double s = (t - entry) * scale;
     return static_cast<float>(s < 1e30 ? s : 1e30) * (1 + 0x1p-20f) + slack;
   }

@@ -207,8 +207,8 @@ HWY_ATTR inline std::uint32_t meet_any(const Hierarchy::Node& node, const PackPr
   return met;
 }
 
-HWY_ATTR std::uint32_t pack_next(const Hierarchy::Node* nodes, PackProbe& probe, std::uint8_t opacity,
-                                 Mask alive, PackWalk& walk, BitCounts& box_tests, Mask& rays) {
+HWY_ATTR std::uint32_t next_run(const Hierarchy::Node* nodes, PackProbe& probe, std::uint8_t opacity,
+                                Mask alive, PackWalk& walk, BitCounts& box_tests, Mask& rays) {
   alignas(32) float nears[Hierarchy::kWidth];
   if (probe.shortened) find_limit_bound(probe);
   while (walk.size > 0) {
@@ -247,6 +247,7 @@ namespace fas {
 namespace {
 constexpr auto kProbes = FAS_VERSIONS(probes);
 constexpr auto kFindBounds = FAS_VERSIONS(find_bounds);
+constexpr auto kNextRun = FAS_VERSIONS(next_run);
 }  // namespace
 
 void make_probes(const ClipBox& box, double condition, const PackRays& rays, PackProbe& probe,
@@ -259,11 +260,9 @@ void make_probes(const ClipBox& box, double condition, const PackRays& rays, Pac
   kFindBounds.best()(probe, met & ~unusable);
 }
 
-PackWalkKernel dispatched_pack_walk_kernel() { return {FAS_VERSIONS(pack_next).best()}; }
-
-const PackWalkKernel& pack_walk_kernel() {
-  static const PackWalkKernel chosen = dispatched_pack_walk_kernel();
-  return chosen;
+std::uint32_t pack_next(const Hierarchy::Node* nodes, PackProbe& probe, std::uint8_t opacity,
+                        PackProbe::Mask alive, PackWalk& walk, BitCounts& box_tests, PackProbe::Mask& rays) {
+  return kNextRun.best()(nodes, probe, opacity, alive, walk, box_tests, rays);
 }
 
 }  // namespace fas

@@ -52,8 +52,7 @@ struct PackProbe {
 
   /// Ray i is of interest up to `t` only.
   void shorten(std::size_t i, double t) {
-    const double s = (t - entry[i]) * scale[i];
-    limit[i] = static_cast<float>(s < 1e30 ? s : 1e30) * (1 + 0x1p-20f) + slack[i];
+    limit[i] = BoxProbe::limit(t, entry[i], scale[i], slack[i]);
     shortened = true;
   }
   /// Ray i is of interest no more.
@@ -97,17 +96,12 @@ struct PackWalk {
   explicit PackWalk(PackProbe::Mask mask) { pending[0] = {0, Hierarchy::kEnd, 0, mask}; }  // NOLINT
 };
 
-/// The vector code, chosen once by the processor at hand; all targets visit the same in the same order.
-struct PackWalkKernel {
-  /// Goes on to the next run of primitives that rays of `alive` may meet within their limits and whose mask
-  /// has a bit in common with `opacity`, or to a node that no more than kFewRays meet: an encoded child and
-  /// the rays, or Hierarchy::kEnd. Counts a box test for the rays of every node that it opens.
-  std::uint32_t (*next)(const Hierarchy::Node* nodes, PackProbe& probe, std::uint8_t opacity,
+/// Goes on to the next run of primitives that rays of `alive` may meet within their limits and whose mask has
+/// a bit in common with `opacity`, or to a node that no more than kFewRays meet: an encoded child and the
+/// rays, or Hierarchy::kEnd. Counts a box test for the rays of every node that it opens. All instruction sets
+/// visit the same in the same order.
+std::uint32_t pack_next(const Hierarchy::Node* nodes, PackProbe& probe, std::uint8_t opacity,
                         PackProbe::Mask alive, PackWalk& walk, BitCounts& box_tests, PackProbe::Mask& rays);
-};
-const PackWalkKernel& pack_walk_kernel();
-/// That for the target that calls go to at present (dispatch.h), so that tests can go through all of them.
-PackWalkKernel dispatched_pack_walk_kernel();
 
 /// Visits runs of primitives that rays of `alive` may meet, roughly front to back. `visit(first, count,
 /// rays)` tests the primitives at those places against these rays, shortens them in `probe`, and returns
@@ -115,7 +109,6 @@ PackWalkKernel dispatched_pack_walk_kernel();
 template <class Visit>
 void traverse(const Hierarchy& hierarchy, PackProbe& probe, std::uint8_t opacity, PackProbe::Mask alive,
               BitCounts& box_tests, const Visit& visit) {
-  const PackWalkKernel& kernel = pack_walk_kernel();
   const Hierarchy::Node* nodes = hierarchy.nodes().data();
   PackWalk walk(alive);
   const auto visit_run = [&](std::uint32_t child, PackProbe::Mask rays) {
@@ -125,7 +118,7 @@ void traverse(const Hierarchy& hierarchy, PackProbe& probe, std::uint8_t opacity
   };
   while (alive != 0) {
     PackProbe::Mask rays = 0;
-    const std::uint32_t child = kernel.next(nodes, probe, opacity, alive, walk, box_tests, rays);
+    const std::uint32_t child = pack_next(nodes, probe, opacity, alive, walk, box_tests, rays);
     if (child == Hierarchy::kEnd) return;
     if ((child & Hierarchy::kLeafBit) != 0) {
       visit_run(child, rays);

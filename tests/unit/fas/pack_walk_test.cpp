@@ -79,17 +79,16 @@ struct Rays {
 
 class PackWalkTest : public test::TargetTest {
  protected:
-  /// The kernel of the target under test, by the interface of traverse().
+  /// What the target under test goes through.
   static std::vector<std::pair<std::uint32_t, Mask>> runs(const Hierarchy& hierarchy, PackProbe& probe,
                                                           std::uint8_t opacity, Mask alive) {
-    const PackWalkKernel kernel = dispatched_pack_walk_kernel();
     std::vector<std::pair<std::uint32_t, Mask>> out;
     PackWalk walk(alive);
     BitCounts counts;
     for (;;) {
       Mask rays = 0;
       const std::uint32_t child =
-          kernel.next(hierarchy.nodes().data(), probe, opacity, alive, walk, counts, rays);
+          pack_next(hierarchy.nodes().data(), probe, opacity, alive, walk, counts, rays);
       if (child == Hierarchy::kEnd) return out;
       out.emplace_back(child, rays);
     }
