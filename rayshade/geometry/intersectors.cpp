@@ -119,8 +119,8 @@ class GroupIntersector : public Intersector {
     for (; i < queries.size(); ++i) ask_world(scene_, queries[i], answers[i], scratch);
   }
 
-  /// Rays of a span share packs.
-  std::size_t preferred_span() const override { return brute_force_ ? 64 : 512; }
+  /// Rays of a span share packs, of one octant of directions each.
+  std::size_t preferred_span() const override { return brute_force_ || in_packs_ ? RayPack::kMost : 512; }
 
   void report(const TraceScratch& /*scratch*/, IntersectorReport& into) const override {
     using Method = IntersectorReport::Method;

@@ -29,7 +29,8 @@ std::uint64_t in_trees(const RenderStatistics& s) {
 const char* kPlain = "screen 60 44 sample 1 nojitter";
 
 TEST(ClassReportTest, RaysOfAllClassesAreTheQueriesOfTheRenderer) {
-  RenderOptions usual, always, small, none, threads;
+  RenderOptions chosen, usual, always, small, none, threads;
+  usual.fas_choose = none.fas_choose = threads.fas_choose = false;
   always.fas_split = fas::Split::kAlways;
   small.fas_memory = std::size_t{256} << 10;
   small.fas_split = fas::Split::kAlways;
@@ -38,13 +39,13 @@ TEST(ClassReportTest, RaysOfAllClassesAreTheQueriesOfTheRenderer) {
   threads.block_side = 8;
   for (const char* view : {kPlain, "screen 50 40 sample 2", "screen 40 30 sample 2 aperture .1 focaldist 12",
                            "screen 40 30 sample 1 shadowtransp"}) {
-    for (const RenderOptions& options : {usual, always, small, none, threads}) {
+    for (const RenderOptions& options : {chosen, usual, always, small, none, threads}) {
       const Rendered rendered(crowd(view), options);
       const RenderStatistics& s = rendered.statistics();
       ASSERT_EQ(s.intersector.method, Method::kTrees);
       EXPECT_EQ(queries(s), s.shading.queries()) << view;
-      // Otherwise the choice is the clock's.
-      if (options.fas_split == fas::Split::kAlways) {
+      // Where there is a choice, it is the clock's.
+      if (!options.fas_choose || options.fas_split == fas::Split::kAlways) {
         EXPECT_GT(in_trees(s), 0u);
       }
       for (const ClassReport& c : s.intersector.classes) {
@@ -82,7 +83,7 @@ TEST(ClassReportTest, EveryLightHasItsName) {
 
 TEST(ClassReportTest, FramesAddUpAndMemoryIsReported) {
   RenderOptions usual;
-  usual.fas_split = fas::Split::kAlways;
+  usual.fas_choose = false;
   Rendered rendered(crowd(kPlain), usual);
   const std::uint64_t one = queries(rendered.statistics());
   const std::atomic<bool> stop{false};
@@ -129,6 +130,7 @@ TEST(CostMapTest, PixelsAddUpToTheStatistics) {
     RenderOptions options;
     options.cost = true;
     options.fas_split = split;
+    options.fas_choose = false;
     const Rendered rendered(crowd(kPlain), options, {"tests", "bounds_tests", "rays", "tree_rays"});
     const RenderStatistics& s = rendered.statistics();
     ASSERT_EQ(s.intersector.method, Method::kTrees);
@@ -137,9 +139,7 @@ TEST(CostMapTest, PixelsAddUpToTheStatistics) {
     EXPECT_EQ(rendered.sum_of("rays"), static_cast<double>(s.shading.queries()));
     EXPECT_EQ(rendered.sum_of("tree_rays"), static_cast<double>(in_trees(s)));
     const std::uint64_t leaf_tests = sum(s, [](const ClassReport& c) { return c.in_tree.tests; });
-    if (split == fas::Split::kAlways) {
-      EXPECT_GT(leaf_tests, s.trace.total_tests() / 4);
-    }
+    EXPECT_GT(leaf_tests, s.trace.total_tests() / 4);
   }
 }
 
