@@ -9,9 +9,6 @@
 namespace rayshade {
 namespace {
 
-/// Fewer rays than this are traced one by one.
-constexpr std::uint32_t kFewest = 6;
-
 std::size_t octant(const Vec3& d) {
   return static_cast<std::size_t>(std::signbit(d.x)) + 2 * static_cast<std::size_t>(std::signbit(d.y)) +
          4 * static_cast<std::size_t>(std::signbit(d.z));
@@ -57,7 +54,7 @@ void HierarchyPacks::ask(std::span<const Query> queries, std::span<Answer> answe
 
 template <class Query, class Answer>
 void HierarchyPacks::trace(std::span<const Query> queries, std::span<Answer> answers, Waiting& waiting) {
-  if (waiting.count < kFewest) {
+  if (static_cast<int>(waiting.count) < PackTracer::kFewest) {
     for (std::uint32_t k = 0; k < waiting.count; ++k)
       ask_world(scene_, queries[waiting.places[k]], answers[waiting.places[k]], scratch_);
   } else {

@@ -26,7 +26,7 @@ double from_srgb(double stored) {
 // Between the limits truncation is the conversion to int; not-a-number fails both comparisons.
 template <int kMax>
 int to_code(double v) {
-  const double above = v > 0 ? v : 0.0, limited = above < 1 ? above : 1.0;
+  const double limited = v > 0 ? (v < 1 ? v : 1.0) : 0.0;
   return static_cast<int>(kMax * limited);
 }
 
