@@ -55,9 +55,8 @@ class Choice {
     const bool enough = rays >= kFewest;
     if (!tree_mode_.load(std::memory_order_relaxed)) {
       if (seen < again_.load(std::memory_order_relaxed) || !worth_starting()) {
-        const bool known = plain_rays_.load(std::memory_order_relaxed) > kKnown;
         return {Way::kHierarchy,
-                enough && (!known || turn_.fetch_add(1, std::memory_order_relaxed) % 16 == 0)};
+                enough && (!known() || turn_.fetch_add(1, std::memory_order_relaxed) % 16 == 0)};
       }
       tree_mode_.store(true, std::memory_order_relaxed);
     }
@@ -118,6 +117,8 @@ class Choice {
     const double ratio = share(tree_ns_, timed_rays_) / std::max(share(hierarchy_ns_, compared_), 1e-3);
     if (ratio + making / plain_per_ray() > doubt) leave();
   }
+  /// Whether enough rays have gone through the hierarchy to tell what the others will be like.
+  bool known() const { return plain_rays_.load(std::memory_order_relaxed) > kKnown; }
   /// Nanoseconds of a ray through the hierarchy.
   double plain_per_ray() const {
     return plain_rays_.load(std::memory_order_relaxed) > 0 ? std::max(share(plain_ns_, plain_rays_), 1.0)
@@ -131,6 +132,7 @@ class Choice {
   /// Nanoseconds that a ray through the tree may save.
   double hope() const {
     if (saving_.needed <= 0) return saving_.share * plain_per_ray();
+    if (!known()) return 0;
     const double tests = share(plain_tests_, plain_rays_);
     return tests > saving_.needed ? saving_.share * plain_per_ray() * (1 - saving_.needed / tests) : 0;
   }
@@ -156,7 +158,7 @@ class Choice {
     tree_mode_.store(false, std::memory_order_relaxed);
   }
 
-  /// Rays after which it is known what one through the hierarchy takes, about.
+  /// See known(): the first few rays are of one place.
   static constexpr std::uint64_t kKnown = 1 << 14;
   /// Rays through the hierarchy, beside a tree, before the first judgement.
   static constexpr std::uint64_t kTrial = 2048;

@@ -234,18 +234,20 @@ TEST(Choice, LeavesATreeThatIsSlowerAloneAndComesBack) {
   // where most rays have come.
   Choice crowded(1e6, 1e9, kPacks);
   EXPECT_EQ(crowded.next(64).way, Way::kHierarchy);
-  crowded.through_hierarchy(64, 64 * 100, 64 * 4);
+  crowded.through_hierarchy(20'000, 20'000 * 100, 20'000 * 4);
   EXPECT_EQ(crowded.next(64).way, Way::kHierarchy);
   Choice costly(1e6, 1e9, kPacks);
   costly.through_hierarchy(64, 64 * 60'000, 64 * 4);
+  EXPECT_EQ(costly.next(64).way, Way::kHierarchy);  // too few to tell
+  costly.through_hierarchy(20'000, 20'000 * 60'000.0, 20'000 * 4);
   EXPECT_EQ(costly.next(64).way, Way::kTree);
   Choice early(1e6, 5e6, kPacks), late(1e6, 5e6, kPacks);
-  for (Choice* each : {&early, &late}) each->through_hierarchy(64, 64 * 100, 64 * 4);
+  for (Choice* each : {&early, &late}) each->through_hierarchy(20'000, 20'000 * 100, 20'000 * 4);
   EXPECT_EQ(early.next(64).way, Way::kTree);
   EXPECT_EQ(late.next(900'000).way, Way::kHierarchy);
   // Nor where rays make hardly a test too many.
   Choice frugal(1e6, 0, kPacks);
-  frugal.through_hierarchy(64, 64 * 100, 64);
+  frugal.through_hierarchy(20'000, 20'000 * 100, 20'000);
   EXPECT_EQ(frugal.next(64).way, Way::kHierarchy);
   // Where tests are not looked at, a tree is tried at once, by single rays too.
   Choice alone(1e6, 1e6, kAlone), hopeless(1e6, 1e9, kAlone);
@@ -253,6 +255,7 @@ TEST(Choice, LeavesATreeThatIsSlowerAloneAndComesBack) {
   EXPECT_EQ(hopeless.next(1).way, Way::kHierarchy);
   // What has been made is paid for: near the end a tree is kept for what its rays cost from now on.
   Choice sunk(1e5, 1.5e5, kPacks);
+  sunk.through_hierarchy(20'000, 20'000 * 100, 20'000 * 4);
   EXPECT_GT(run(sunk, 60, 100, 40, 64 * 75), 0.4);
   EXPECT_GT(run(sunk, 60, 100, 1500), 0.8);
   // Building that never ends counts, too.
