@@ -40,6 +40,7 @@ struct Drawn {
 Drawn draw(const std::string& scene, fas::Split split, int threads = 1) {
   RenderOptions options;
   options.fas_split = split;
+  options.fas_choose = false;  // as for --fas-dump
   options.threads = threads;
   const Rendered rendered(scene, options);
   Drawn out;
