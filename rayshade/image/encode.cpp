@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "rayshade/math/clones.h"
 #include "rayshade/math/functions.h"
 #include "rayshade/math/vec.h"
 
@@ -28,6 +29,11 @@ template <int kMax>
 int to_code(double v) {
   const double limited = v > 0 ? (v < 1 ? v : 1.0) : 0.0;
   return static_cast<int>(kMax * limited);
+}
+
+RAYSHADE_CLONES("avx2")
+void linear_bytes(const double* values, std::size_t count, std::uint8_t* __restrict out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<std::uint8_t>(to_code<255>(values[i]));
 }
 
 // Both directions of the transfer function are good to some units in the last place of a double, about 1e-15
@@ -111,7 +117,7 @@ std::uint8_t ColorEncoder::table_byte(double linear) const {
 
 void ColorEncoder::bytes(const double* rgba, std::size_t count, std::uint8_t* out) const {
   if (identity_) {
-    for (std::size_t i = 0; i < 4 * count; ++i) out[i] = static_cast<std::uint8_t>(to_code<255>(rgba[i]));
+    linear_bytes(rgba, 4 * count, out);
     return;
   }
   for (std::size_t i = 0; i < count; ++i, rgba += 4, out += 4) {

@@ -10,6 +10,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "rayshade/math/clones.h"
+
 namespace rayshade {
 namespace {
 
@@ -39,21 +41,27 @@ void encode_pixels(const double* rgba, std::size_t count, PixelStorage storage, 
   }
 }
 
+/// Whether all values are numbers from 0 to the largest finite one.
+RAYSHADE_CLONES("avx2") bool all_usual(std::span<const double> values) {
+  std::int64_t unusual = 0;
+  for (const double v : values)
+    unusual |= (v >= 0 ? 0 : 1) | (v <= std::numeric_limits<double>::max() ? 0 : 1);
+  return unusual == 0;
+}
+
 /// As EncodedBlock::odd.
 std::vector<std::uint8_t> odd_pixels(std::span<const double> rgba) {
   std::vector<std::uint8_t> odd;
+  if (all_usual(rgba)) return odd;
   for (std::size_t i = 0; i + 3 < rgba.size(); i += 4) {
     const double* const p = &rgba[i];
-    // The common pixel needs one comparison per channel.
-    if (p[0] >= 0 && p[1] >= 0 && p[2] >= 0 && p[0] + p[1] + p[2] < std::numeric_limits<double>::max())
-      continue;
     unsigned oddities = 0;
     for (int c = 0; c < 3; ++c) {
       if (std::isnan(p[c])) oddities |= kNotANumber;
       if (p[c] < 0) oddities |= kNegative;
       if (std::isinf(p[c])) oddities |= kInfinite;
     }
-    if (oddities == 0) continue;  // finite channels of an infinite sum
+    if (oddities == 0) continue;
     odd.resize(rgba.size() / 4);
     odd[i / 4] = static_cast<std::uint8_t>(oddities);
   }

@@ -24,16 +24,17 @@ void BlockRenderer::take_samples(Rounds& rounds, std::size_t pixel, int from, in
 
 /// Traces what was taken and adds it up.
 void BlockRenderer::trace_round(Rounds& rounds) {
-  trace_samples();
+  traced_.clear();
+  trace_samples(traced_);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const SampleResult& result = results_[i];
+    const SampleResult& result = traced_.results[i];
     rounds.sums[rounds.owners[i]].add(result.color, result.hit);
     const int x = static_cast<int>(samples_[i].x), y = static_cast<int>(samples_[i].y);
     if (rounds.out.layers.empty() || !rounds.out.rect.contains(x, y)) continue;
     BlockPixels::Layer& layer = rounds.out.layers[rounds.out.rect.index(x, y)];
-    if (samples_[i].sample == 0) note_layer(result, layer);
+    if (samples_[i].sample == 0) note_layer(traced_, i, layer);
     layer.samples += 1;
-    add_cost(result, frame_.cost ? &costs_[i] : nullptr, layer);
+    add_cost(traced_, i, layer);
   }
   samples_.clear();
   rounds.owners.clear();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "rayshade/render/block_renderer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <numeric>
@@ -31,82 +32,151 @@ int BlockRenderer::chosen_sample(int x, int y) const {
 /// Adds sample `k` of a pixel to those to be traced. It is made where it stays: copies of fresh records stall
 /// on their own stores.
 void BlockRenderer::take_sample(int x, int y, int k) {
-  const RenderSettings& settings = *frame_.shading.settings;
   EyeSample& out = samples_.add();
   out.x = static_cast<std::uint32_t>(x);
   out.y = static_cast<std::uint32_t>(y);
   out.sample = static_cast<std::uint32_t>(k);
-  out.sample_number = settings.sobol() ? 0 : frame_.grid->sample_number(k);
-  const SampleNumbers numbers(settings, frame_.shading.frame, out.x, out.y, out.sample);
-  const bool moves = settings.sobol() || settings.jitter;
-  const auto chosen = numbers.eye(moves, frame_.camera->has_lens(), moves && settings.shutter > 0);
-  const auto [xi, zeta] = chosen.pixel;
-  const auto offset = settings.sobol() ? frame_.filter->offset(xi, zeta) : frame_.grid->offset(k, xi, zeta);
-  const double u = x + offset[0], v = y + offset[1];
-  if (frame_.camera->has_lens()) {
-    out.ray = frame_.camera->lens_ray(u, v, out.sample_number, chosen.lens[0], chosen.lens[1]);
-  } else {
-    frame_.camera->ray(u, v, out.ray);
+  out.sample_number = frame_.shading.settings->sobol() ? 0 : frame_.grid->sample_number(k);
+}
+
+/// The rays of samples_.
+void BlockRenderer::make_rays() {
+  const RenderSettings& settings = *frame_.shading.settings;
+  const Camera& camera = *frame_.camera;
+  const SampleGrid& grid = *frame_.grid;
+  const int frame = frame_.shading.frame;
+  const bool sobol = settings.sobol(), lens = camera.has_lens(), shutter = settings.shutter > 0;
+  const bool moves = sobol || settings.jitter, varies = moves || lens || shutter;
+  const double start = frame_.shading.eye_start(), still = camera.time(frame, 0, 0);
+  if (rays_.size() < samples_.size()) rays_.resize(samples_.size());
+  ScreenPoints points;
+  for (std::size_t first = 0; first < samples_.size(); first += ScreenPoints::kMost) {
+    const EyeSample* const samples = samples_.begin() + first;
+    NearestQuery* const rays = rays_.data() + first;
+    const std::size_t count = points.count = std::min(ScreenPoints::kMost, samples_.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const EyeSample& sample = samples[i];
+      const int k = static_cast<int>(sample.sample);
+      rays[i].lo = start;
+      rays[i].ray.time = still;
+      if (!varies) {
+        const auto& corner = grid.corner(k);
+        points.u[i] = sample.x + corner[0];
+        points.v[i] = sample.y + corner[1];
+        continue;
+      }
+      const SampleNumbers numbers(settings, frame, sample.x, sample.y, sample.sample);
+      const auto chosen = numbers.eye(moves, lens, moves && shutter);
+      const auto [xi, zeta] = chosen.pixel;
+      const auto offset = sobol ? frame_.filter->offset(xi, zeta) : grid.offset(k, xi, zeta);
+      points.u[i] = sample.x + offset[0];
+      points.v[i] = sample.y + offset[1];
+      if (lens)
+        rays[i].ray =
+            camera.lens_ray(points.u[i], points.v[i], sample.sample_number, chosen.lens[0], chosen.lens[1]);
+      rays[i].ray.time = camera.time(frame, sample.sample_number, chosen.moment);
+    }
+    if (lens) continue;
+    camera.aim(points);
+    for (std::size_t i = 0; i < count; ++i) {
+      Ray& ray = rays[i].ray;
+      ray.origin = camera.eye();
+      ray.direction = points.direction(i);
+      ray.unit = true;
+    }
   }
-  out.ray.time = frame_.camera->time(frame_.shading.frame, out.sample_number, chosen.moment);
 }
 
-void BlockRenderer::trace_range(std::size_t first, std::size_t count) {
-  tree_.trace(std::span(samples_.begin(), samples_.end()).subspan(first, count),
-              std::span(results_).subspan(first, count));
-}
-
-/// Traces samples_ into results_; one by one and timed where costs are wanted.
-void BlockRenderer::trace_samples() {
-  results_.resize(samples_.size());
+/// Traces samples_ and adds what they bring to `traced`; one by one and timed where costs are wanted.
+void BlockRenderer::trace_samples(Traced& traced) {
+  make_rays();
+  const std::size_t before = traced.results.size(), count = samples_.size();
+  traced.results.resize(before + count);
+  if (layered()) traced.details.resize(before + count);
+  const auto trace = [&](std::size_t first, std::size_t n) {
+    const auto part = [&](auto& records) {
+      return std::span(records).subspan(records.empty() ? 0 : before + first, records.empty() ? 0 : n);
+    };
+    tree_.trace({rays_.data() + first, n}, {samples_.begin() + first, n}, part(traced.results),
+                part(traced.details));
+  };
   if (!frame_.cost) {
-    trace_range(0, samples_.size());
+    trace(0, count);
     return;
   }
-  costs_.resize(samples_.size());
+  traced.costs.resize(before + count);
   const auto queries = [&] { return tree_.counts().queries(); };
   const auto in_trees = [&] { return tree_.scratch().trees ? tree_.scratch().trees->rays() : 0; };
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const std::uint64_t queries_before = queries(), in_trees_before = in_trees();
     const auto start = std::chrono::steady_clock::now();
-    trace_range(i, 1);
+    trace(i, 1);
     const auto end = std::chrono::steady_clock::now();
-    costs_[i] = {std::chrono::duration<float, std::micro>(end - start).count(),
-                 static_cast<float>(queries() - queries_before),
-                 static_cast<float>(in_trees() - in_trees_before)};
+    traced.costs[before + i] = {std::chrono::duration<float, std::micro>(end - start).count(),
+                                static_cast<float>(queries() - queries_before),
+                                static_cast<float>(in_trees() - in_trees_before)};
   }
 }
 
-void BlockRenderer::note_layer(const SampleResult& result, BlockPixels::Layer& layer) const {
-  layer.depth = result.hit ? static_cast<float>(result.distance) : std::numeric_limits<float>::infinity();
+void BlockRenderer::note_layer(const Traced& traced, std::size_t i, BlockPixels::Layer& layer) const {
+  const bool hit = traced.results[i].hit;
+  const SampleDetail& detail = traced.details[i];
+  layer.depth = hit ? static_cast<float>(detail.distance) : std::numeric_limits<float>::infinity();
   for (int axis = 0; axis < 3; ++axis)
-    layer.normal[axis] = result.hit ? static_cast<float>(result.normal[axis]) : 0.0f;
-  layer.object =
-      result.hit && !frame_.numbers.empty() ? static_cast<float>(frame_.numbers[result.leaf]) : 0.0f;
+    layer.normal[axis] = hit ? static_cast<float>(detail.normal[axis]) : 0.0f;
+  layer.object = hit && !frame_.numbers.empty() ? static_cast<float>(frame_.numbers[detail.leaf]) : 0.0f;
 }
 
-void BlockRenderer::add_cost(const SampleResult& result, const SampleCost* cost, BlockPixels::Layer& layer) {
-  layer.tests += static_cast<float>(result.tests);
-  layer.bounds_tests += static_cast<float>(result.bounds_tests);
-  if (!cost) return;
-  layer.microseconds += cost->microseconds;
-  layer.rays += cost->rays;
-  layer.tree_rays += cost->tree_rays;
+void BlockRenderer::add_cost(const Traced& traced, std::size_t i, BlockPixels::Layer& layer) {
+  layer.tests += static_cast<float>(traced.details[i].tests);
+  layer.bounds_tests += static_cast<float>(traced.details[i].bounds_tests);
+  if (traced.costs.empty()) return;
+  layer.microseconds += traced.costs[i].microseconds;
+  layer.rays += traced.costs[i].rays;
+  layer.tree_rays += traced.costs[i].tree_rays;
 }
 
-void BlockRenderer::render_single(const PixelRect& rect) {
+/// One sample of every pixel of `outer` into single_, in TileOrder; those of the block become its pixels.
+void BlockRenderer::render_single(const PixelRect& outer, BlockPixels& out) {
+  single_.clear();
   samples_.clear();
-  TileOrder(rect).each([&](int x, int y) { take_sample(x, y, chosen_sample(x, y)); });
-  trace_samples();
+  const PixelRect rect = out.rect;
+  double* const rgba = out.rgba.data();
+  const double hit = frame_.sample_map ? 0 : 1;
+  const bool layers = !out.layers.empty();
+  const auto flush = [&] {
+    const std::size_t first = single_.results.size();
+    trace_samples(single_);
+    const std::size_t count = samples_.size();
+    const EyeSample* const samples = samples_.begin();
+    const SampleResult* const results = single_.results.data() + first;
+    for (std::size_t i = 0; i < count; ++i) {
+      const int x = static_cast<int>(samples[i].x), y = static_cast<int>(samples[i].y);
+      if (!rect.contains(x, y)) continue;
+      const std::size_t index = rect.index(x, y);
+      store_pixel(&rgba[4 * index], results[i].color, results[i].hit ? hit : 0.0);
+      if (!layers) continue;
+      BlockPixels::Layer& layer = out.layers[index];
+      note_layer(single_, first + i, layer);
+      layer.samples = 1;
+      add_cost(single_, first + i, layer);
+    }
+    samples_.clear();
+  };
+  const bool choose = frame_.grid->count() > 1;
+  TileOrder(outer).each([&](int x, int y) {
+    take_sample(x, y, choose ? chosen_sample(x, y) : 0);
+    if (samples_.size() >= kSamplesTogether) flush();
+  });
+  flush();
 }
 
 void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
   const RenderSettings& settings = *frame_.shading.settings;
-  const bool layered = frame_.layers || frame_.cost;
-  const std::size_t pixels = static_cast<std::size_t>(rect.width()) * rect.height();
+  const std::size_t pixels = rect.area();
   out.rect = rect;
   out.rgba.resize(4 * pixels);
-  out.layers.assign(layered ? pixels : 0, {});
+  out.layers.assign(layered() ? pixels : 0, {});
   ++counts_.blocks;
   counts_.pixels += pixels;
   if (settings.sobol()) {
@@ -117,54 +187,37 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
   // Single samples, with the halo that refinement looks at.
   const bool refine = frame_.grid->count() > 1;
   const PixelRect outer = refine ? halo(rect, kRefinementReach, settings.width, settings.height) : rect;
-  render_single(outer);
-  std::swap(results_, single_);  // not moved: the next block finds its memory here
-  std::swap(costs_, single_costs_);
-  const std::vector<SampleResult>& single = single_;
+  render_single(outer, out);
+  const std::vector<SampleResult>& single = single_.results;
   counts_.halo_samples += single.size() - pixels;
-  const TileOrder order(outer);
-  std::vector<bool> full;
-  if (refine) {
-    std::vector<Color> colors(single.size());
-    std::size_t i = 0;
-    order.each([&](int x, int y) { colors[outer.index(x, y)] = single[i++].color; });
-    full = choose_full(rect, colors, settings.contrast, settings.width, settings.height);
-  }
-
-  std::size_t i = 0;
-  order.each([&](int x, int y) {
-    const std::size_t own = i++;
-    if (!rect.contains(x, y)) return;
-    const SampleResult& one = single[own];
-    const std::size_t index = rect.index(x, y);
-    store_pixel(&out.rgba[4 * index], one.color, one.hit && !frame_.sample_map ? 1.0 : 0.0);
-    if (layered) {
-      BlockPixels::Layer& layer = out.layers[index];
-      note_layer(one, layer);
-      layer.samples = 1;
-      add_cost(one, frame_.cost ? &single_costs_[own] : nullptr, layer);
-    }
-  });
   if (!refine) {
+    // Nothing is left to be done, but the border of the screen counts as fully sampled.
+    const PixelRect inner{std::max(rect.x0, 1), std::max(rect.y0, 1), std::min(rect.x1, settings.width - 1),
+                          std::min(rect.y1, settings.height - 1)};
+    const bool any_inner = inner.x0 < inner.x1 && inner.y0 < inner.y1;
+    counts_.supersampled += pixels - (any_inner ? inner.area() : 0);
+    if (!frame_.sample_map) return;
     for (int y = rect.y0; y < rect.y1; ++y) {
-      for (int x = rect.x0; x < rect.x1; ++x) {
-        const bool border = x == 0 || y == 0 || x == settings.width - 1 || y == settings.height - 1;
-        counts_.supersampled += border;
-        if (border && frame_.sample_map) {
-          out.rgba[4 * (static_cast<std::size_t>(y - rect.y0) * rect.width() + (x - rect.x0)) + 3] = 1;
-        }
-      }
+      for (int x = rect.x0; x < rect.x1; ++x)
+        if (!inner.contains(x, y)) out.rgba[4 * rect.index(x, y) + 3] = 1;
     }
     return;
   }
+
+  const TileOrder order(outer);
+  std::vector<Color> colors(single.size());
+  std::size_t own = 0;
+  order.each([&](int x, int y) { colors[outer.index(x, y)] = single[own++].color; });
+  const std::vector<bool> full =
+      choose_full(rect, colors, settings.contrast, settings.width, settings.height);
 
   // The other samples of the pixels that need them, in chunks of whole pixels.
   const int count = frame_.grid->count();
   std::vector<std::size_t> chosen;
   const auto flush = [&] {
-    trace_samples();
-    const SampleResult* result = results_.data();
-    const SampleCost* cost = costs_.data();
+    traced_.clear();
+    trace_samples(traced_);
+    std::size_t next = 0;
     for (const std::size_t p : chosen) {
       const int x = rect.x0 + static_cast<int>(p % static_cast<std::size_t>(rect.width()));
       const int y = rect.y0 + static_cast<int>(p / static_cast<std::size_t>(rect.width()));
@@ -173,15 +226,17 @@ void BlockRenderer::render(const PixelRect& rect, BlockPixels& out) {
       Color sum;
       double alpha = 0;
       for (int k = 0; k < count; ++k) {
-        const SampleResult& sample = k == reused ? one : *result++;
+        const bool again = k == reused;
+        const SampleResult& sample = again ? one : traced_.results[next];
         const double weight = frame_.grid->weight(k);
         sum += weight * sample.color;
         alpha += sample.hit ? weight : 0.0;
-        if (!layered || k == reused) continue;
-        add_cost(sample, frame_.cost ? cost++ : nullptr, out.layers[p]);
+        if (again) continue;
+        if (!out.layers.empty()) add_cost(traced_, next, out.layers[p]);
+        ++next;
       }
       store_pixel(&out.rgba[4 * p], sum, frame_.sample_map ? 1.0 : alpha);
-      if (layered) out.layers[p].samples = static_cast<float>(count);
+      if (!out.layers.empty()) out.layers[p].samples = static_cast<float>(count);
     }
     samples_.clear();
     chosen.clear();
@@ -206,7 +261,8 @@ void BlockRenderer::observe(int x, int y, TreeObserver& observer) {
   tree_.set_observer(&observer);
   samples_.clear();
   take_sample(x, y, chosen_sample(x, y));
-  trace_samples();
+  traced_.clear();
+  trace_samples(traced_);
   tree_.set_observer(nullptr);
 }
 

@@ -70,11 +70,29 @@ class BlockRenderer {
   const SamplingCounts& counts() const { return counts_; }
 
  private:
+  /// Of one sample, beside what SampleDetail counts.
+  struct SampleCost {
+    float microseconds = 0, rays = 0, tree_rays = 0;
+  };
+  /// What samples brought back, in the order in which they were taken.
+  struct Traced {
+    std::vector<SampleResult> results;
+    std::vector<SampleDetail> details;  ///< where layers or costs are wanted
+    std::vector<SampleCost> costs;      ///< where costs are wanted
+
+    void clear() {
+      results.clear();
+      details.clear();
+      costs.clear();
+    }
+  };
+
+  bool layered() const { return frame_.layers || frame_.cost; }
   void take_sample(int x, int y, int k);
   int chosen_sample(int x, int y) const;
-  void trace_range(std::size_t first, std::size_t count);
-  void trace_samples();
-  void render_single(const PixelRect& rect);
+  void make_rays();
+  void trace_samples(Traced& traced);
+  void render_single(const PixelRect& outer, BlockPixels& out);
   struct Rounds {
     BlockPixels& out;
     PixelRect outer;                  ///< the block and its halo
@@ -84,19 +102,18 @@ class BlockRenderer {
   void take_samples(Rounds& rounds, std::size_t pixel, int from, int to);
   void trace_round(Rounds& rounds);
   void render_until_exact(const PixelRect& rect, BlockPixels& out);
-  void note_layer(const SampleResult& result, BlockPixels::Layer& layer) const;
+  /// What the first sample of a pixel tells its layers.
+  void note_layer(const Traced& traced, std::size_t i, BlockPixels::Layer& layer) const;
+  /// What sample `i` has cost.
+  static void add_cost(const Traced& traced, std::size_t i, BlockPixels::Layer& layer);
 
   const FrameScene& frame_;
   RayTree tree_;
   SamplingCounts counts_;
-  ReusedList<EyeSample> samples_;
-  std::vector<SampleResult> results_, single_;
-  /// Of one sample, beside what SampleResult counts.
-  struct SampleCost {
-    float microseconds = 0, rays = 0, tree_rays = 0;
-  };
-  static void add_cost(const SampleResult& result, const SampleCost* cost, BlockPixels::Layer& layer);
-  std::vector<SampleCost> costs_, single_costs_;  ///< per sample, when costs are wanted
+  ReusedList<EyeSample> samples_;   ///< to be traced
+  std::vector<NearestQuery> rays_;  ///< theirs; all but the rays themselves stays as it is
+  Traced single_;                   ///< the one sample of every pixel of a block and its halo
+  Traced traced_;                   ///< all others
 };
 
 }  // namespace rayshade

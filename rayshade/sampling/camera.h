@@ -11,6 +11,18 @@
 
 namespace rayshade {
 
+/// Up to 64 points of the screen, in pixels from the upper left corner of the field of view, and where rays
+/// through them go.
+struct ScreenPoints {
+  static constexpr std::size_t kMost = 64;
+
+  std::size_t count = 0;
+  alignas(64) double u[kMost] = {}, v[kMost] = {};
+  alignas(64) double to[3][kMost];  ///< unit directions, by axis
+
+  Vec3 direction(std::size_t i) const { return {to[0][i], to[1][i], to[2][i]}; }
+};
+
 /// Immutable; any number of threads may share one.
 class Camera {
  public:
@@ -32,6 +44,9 @@ class Camera {
     fused::unit_of_sum(corner_, u, step_x_, v, step_y_, out.direction);
     out.unit = true;
   }
+
+  /// The directions of the rays through many points, bit by bit those of ray().
+  void aim(ScreenPoints& points) const;
 
   /// True where eye rays start on a lens instead of at a point.
   bool has_lens() const { return aperture_ > 0; }

@@ -36,10 +36,12 @@ class SampleGrid {
   /// What to add to the coordinates of the pixel to get the screen point of sample k. `xi` and `zeta` in [0,
   /// 1) place it within its cell; they are not looked at without jitter, where it is on the low corner.
   std::array<double, 2> offset(int k, double xi, double zeta) const {
-    const std::array<double, 2>& low = corners_[static_cast<std::size_t>(k)];
+    const std::array<double, 2>& low = corner(k);
     if (!jitter_) return low;
     return {low[0] + xi * width_ / side_, low[1] + zeta * width_ / side_};
   }
+  /// The same without jitter.
+  const std::array<double, 2>& corner(int k) const { return corners_[static_cast<std::size_t>(k)]; }
   double weight(int k) const { return weights_[static_cast<std::size_t>(k)]; }
   int sample_number(int k) const { return numbers_[static_cast<std::size_t>(k)]; }
 

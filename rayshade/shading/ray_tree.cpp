@@ -48,48 +48,39 @@ std::uint32_t RayTree::allocate() {
   return static_cast<std::uint32_t>(nodes_.size() - 1);
 }
 
-void RayTree::trace(std::span<const EyeSample> samples, std::span<SampleResult> results) {
-  counts_.eye_rays += samples.size();
+void RayTree::trace(std::span<const NearestQuery> rays, std::span<const EyeSample> samples,
+                    std::span<SampleResult> results, std::span<SampleDetail> details) {
+  counts_.eye_rays += rays.size();
+  rays_ = rays;
   samples_ = samples;
-  for (std::size_t first = 0; first < samples.size(); first += batch_) {
-    start_batch(first, std::min(batch_, samples.size() - first), samples, results);
-    while (!pending_.empty()) run_batch(samples, results);
+  results_ = results;
+  details_ = details;
+  std::fill(details.begin(), details.end(), SampleDetail{});
+  for (std::size_t first = 0; first < rays.size(); first += batch_) {
+    start_batch(first, std::min(batch_, rays.size() - first));
+    while (!pending_.empty()) run_batch();
   }
 }
 
 /// Eye rays are asked for before they become nodes: one that hits nothing never does.
-void RayTree::start_batch(std::size_t first, std::size_t count, std::span<const EyeSample> samples,
-                          std::span<SampleResult> results) {
-  nearest_queries_.resize(count);
-  const double start = scene_.eye_start();
-  for (std::size_t i = 0; i < count; ++i) {
-    NearestQuery& query = nearest_queries_[i];
-    query.ray = samples[first + i].ray;
-    query.lo = start;
-    query.hi = kFar;
-    query.mask = kAnyOpacity;
-    query.kind = RayKind::kEye;
-    query.depth = 0;
-    query.light = kNone;
-  }
-  ask_nearest([&](std::size_t i) { return first + i; });
+void RayTree::start_batch(std::size_t first, std::size_t count) {
+  const std::span<const NearestQuery> queries = rays_.subspan(first, count);
+  ask_nearest(queries, [&](std::size_t i) { return first + i; });
   batch_nodes_.clear();
   batch_answers_.clear();
   const bool misses_are_background = scene_.settings->effects.empty() && !observer_;
   for (std::size_t i = 0; i < count; ++i) {
-    SampleResult& result = results[first + i];
-    std::construct_at(&result);  // in place
     const NearestAnswer& answer = nearest_answers_[i];
+    results_[first + i].hit = answer.found;
     if (!answer.found && misses_are_background) {
-      result.color = scene_.settings->background;
-      result.tests = answer.tests;
-      result.bounds_tests = answer.bounds_tests;
+      results_[first + i].color = scene_.settings->background;
+      note_tests(static_cast<std::uint32_t>(first + i), answer);
       continue;
     }
     const std::uint32_t id = allocate();
     Node& node = nodes_[id];
-    node.ray = samples[first + i].ray;
-    node.lo = start;
+    node.ray = queries[i].ray;
+    node.lo = queries[i].lo;
     node.contribution = {1, 1, 1};
     node.path = kRootPath;
     node.parent = kNone;
@@ -102,17 +93,17 @@ void RayTree::start_batch(std::size_t first, std::size_t count, std::span<const 
     batch_nodes_.push_back(id);
     batch_answers_.push_back(static_cast<std::uint32_t>(i));
   }
-  shade_batch(samples, results);
+  shade_batch();
 }
 
-void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResult> results) {
+void RayTree::run_batch() {
   // The newest nodes first: their subtrees are finished, and their memory free, before older ones are begun.
   const std::size_t count = std::min(batch_, pending_.size());
   batch_nodes_.assign(pending_.end() - static_cast<std::ptrdiff_t>(count), pending_.end());
   std::reverse(batch_nodes_.begin(), batch_nodes_.end());
   pending_.resize(pending_.size() - count);
 
-  nearest_queries_.resize(count);
+  if (nearest_queries_.size() < count) nearest_queries_.resize(count);
   batch_answers_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Node& node = nodes_[batch_nodes_[i]];
@@ -126,52 +117,50 @@ void RayTree::run_batch(std::span<const EyeSample> samples, std::span<SampleResu
     query.light = kNone;
     batch_answers_[i] = static_cast<std::uint32_t>(i);
   }
-  ask_nearest([&](std::size_t i) { return nodes_[batch_nodes_[i]].root; });
-  shade_batch(samples, results);
+  ask_nearest(std::span(nearest_queries_).first(count),
+              [&](std::size_t i) { return nodes_[batch_nodes_[i]].root; });
+  shade_batch();
 }
 
 template <class SampleOf>
-void RayTree::ask_nearest(const SampleOf& sample_of) {
-  const std::size_t count = nearest_queries_.size();
-  counts_.nearest_queries += count;
+void RayTree::ask_nearest(std::span<const NearestQuery> queries, const SampleOf& sample_of) {
+  counts_.nearest_queries += queries.size();
   const Owners owners(*this, sample_of);
-  if (nearest_answers_.size() < count) nearest_answers_.resize(count);
-  scene_.intersector->nearest(nearest_queries_, {nearest_answers_.data(), count}, scratch_);
+  if (nearest_answers_.size() < queries.size()) nearest_answers_.resize(queries.size());
+  scene_.intersector->nearest(queries, {nearest_answers_.data(), queries.size()}, scratch_);
 }
 
 /// Whether secondary rays may leave a surface.
 inline bool may_spawn(const Surface& surface) { return surface.reflectance != 0 || surface.transparency > 0; }
 
 /// From the answers of a batch to its lights and its secondary rays.
-void RayTree::shade_batch(std::span<const EyeSample> samples, std::span<SampleResult> results) {
+void RayTree::shade_batch() {
   if (shades_.size() < batch_nodes_.size()) shades_.resize(batch_nodes_.size());
-  shade_hits(samples, results);
+  shade_hits();
   const std::size_t lights = scene_.lights.size();
   if (shade_count_ > 0) {
     const std::size_t run = std::max<std::size_t>(1, kQueriesPerRun / shade_count_);
     for (std::size_t first = 0; first < lights; first += run) {
-      emit_lights(first, std::min(first + run, lights), samples);
-      answer_shadows(results);
+      emit_lights(first, std::min(first + run, lights));
+      answer_shadows();
       combine_lights();
     }
   }
   for (std::size_t i = 0; i < shade_count_; ++i) {
     if (may_spawn(*shades_[i].surface)) spawn(shades_[i]);
-    if (nodes_[shades_[i].node].waiting == 0) finish(shades_[i].node, results);
+    if (nodes_[shades_[i].node].waiting == 0) finish(shades_[i].node);
   }
 }
 
 /// Misses become background at once; hits are textured and get their ambient part (shading.md 2.2, 2.3 step
 /// 1).
-void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleResult> results) {
+void RayTree::shade_hits() {
   shade_count_ = 0;
   for (std::size_t i = 0; i < batch_nodes_.size(); ++i) {
     const std::uint32_t id = batch_nodes_[i];
     Node& node = nodes_[id];
     const NearestAnswer& answer = nearest_answers_[batch_answers_[i]];
-    SampleResult& result = results[node.root];
-    result.tests += answer.tests;
-    result.bounds_tests += answer.bounds_tests;
+    note_tests(node.root, answer);
     if (!answer.found) {
       node.color = scene_.settings->background;
       node.distance = kFar;
@@ -180,13 +169,13 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
         observer_->on_hit({id, node.parent, node.kind, &node.ray, node.contribution,
                            static_cast<int>(node.depth), false, kFar, nullptr, nullptr});
       }
-      finish(id, results);
+      finish(id);
       continue;
     }
     ++counts_.shaded_hits;
     Shade& shade = shades_[shade_count_++];
     shade.node = id;
-    const EyeSample& sample = samples[node.root];
+    const EyeSample& sample = samples_[node.root];
     const Gloss gloss({*scene_.settings, scene_.frame, sample.x, sample.y, sample.sample}, node.path);
     const SampleContext context{sample.sample_number, scene_.settings->strata(), &gloss};
     shade.surface = &evaluate_hit(*scene_.compiled, *scene_.textures, answer.hit, node.ray, context, scratch_,
@@ -198,11 +187,11 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
     node.distance = answer.hit.t();
     node.end = world.point;
     node.color = shade.surface->ambient * scene_.settings->ambient_light;
-    if (node.kind == RayKind::kEye) {
-      result.hit = true;
-      result.distance = node.distance;
-      result.normal = world.normal;
-      result.leaf = answer.hit.leaf;
+    if (node.kind == RayKind::kEye && !details_.empty()) {
+      SampleDetail& detail = details_[node.root];
+      detail.distance = node.distance;
+      detail.normal = world.normal;
+      detail.leaf = answer.hit.leaf;
     }
     if (observer_) {
       const TexturedHit textured{world, *shade.surface};
@@ -213,7 +202,7 @@ void RayTree::shade_hits(std::span<const EyeSample> samples, std::span<SampleRes
 }
 
 /// Adds up a node whose children are known, and goes on to its parent if that was the last it waited for.
-void RayTree::finish(std::uint32_t id, std::span<SampleResult> results) {
+void RayTree::finish(std::uint32_t id) {
   for (;;) {
     Node& node = nodes_[id];
     if (node.children & (1u << kTransmittedSlot)) {
@@ -230,7 +219,7 @@ void RayTree::finish(std::uint32_t id, std::span<SampleResult> results) {
     if (observer_) observer_->on_finish(id, node.color);
     free_.push_back(id);
     if (node.parent == kNone) {
-      results[node.root].color = node.color;
+      results_[node.root].color = node.color;
       return;
     }
     Node& parent = nodes_[node.parent];

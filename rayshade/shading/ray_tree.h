@@ -39,10 +39,9 @@ struct ShadingScene {
   double eye_start() const { return kEpsilon * std::min({1.0, compiled->scale, look_distance}); }
 };
 
-/// One eye ray. `sample` is k, the number of the cell within the pixel; `sample_number` is s
+/// Whose an eye ray is. `sample` is k, the number of the cell within the pixel; `sample_number` is s
 /// (shading.md 7.6).
 struct EyeSample {
-  Ray ray;
   std::uint32_t x = 0, y = 0;  ///< pixel in screen coordinates
   std::uint32_t sample = 0;
   int sample_number = 0;
@@ -51,7 +50,11 @@ struct EyeSample {
 /// What an eye ray brought back.
 struct SampleResult {
   Color color;
-  bool hit = false;        ///< alpha
+  bool hit = false;  ///< alpha
+};
+
+/// What else is known of it, for layers and maps of costs.
+struct SampleDetail {
   double distance = kFar;  ///< of the eye ray's own hit
   Vec3 normal;             ///< shading normal there, world space, after textures
   LeafId leaf = 0;
@@ -95,8 +98,10 @@ class RayTree {
   ~RayTree();
   RayTree(const RayTree&) = delete;
   RayTree& operator=(const RayTree&) = delete;
-  /// Colours of the samples; results[i] belongs to samples[i].
-  void trace(std::span<const EyeSample> samples, std::span<SampleResult> results);
+  /// Colours of the samples; results[i] belongs to samples[i], whose ray is rays[i] (of RayKind::kEye).
+  /// `details` are filled where they are not empty.
+  void trace(std::span<const NearestQuery> rays, std::span<const EyeSample> samples,
+             std::span<SampleResult> results, std::span<SampleDetail> details);
 
   void set_observer(TreeObserver* observer) { observer_ = observer; }
   TraceScratch& scratch() { return scratch_; }
@@ -114,31 +119,40 @@ class RayTree {
   class Owners;
 
   std::uint32_t allocate();
-  void start_batch(std::size_t first, std::size_t count, std::span<const EyeSample> samples,
-                   std::span<SampleResult> results);
-  void run_batch(std::span<const EyeSample> samples, std::span<SampleResult> results);
+  void start_batch(std::size_t first, std::size_t count);
+  void run_batch();
   /// `sample_of`: the number of the eye sample that the i-th query is for.
   template <class SampleOf>
-  void ask_nearest(const SampleOf& sample_of);
-  void shade_batch(std::span<const EyeSample> samples, std::span<SampleResult> results);
-  void shade_hits(std::span<const EyeSample> samples, std::span<SampleResult> results);
-  void emit_lights(std::size_t first_light, std::size_t last_light, std::span<const EyeSample> samples);
-  void emit_light(std::uint32_t number, std::span<const LitHit> hits, std::span<const EyeSample> samples);
-  std::array<double, 2> light_draws(const ShadingLight& light, const Node& node,
-                                    std::span<const EyeSample> samples) const;
-  void answer_shadows(std::span<SampleResult> results);
-  void follow_transparent(bool through_all, std::span<SampleResult> results);
+  void ask_nearest(std::span<const NearestQuery> queries, const SampleOf& sample_of);
+  /// Counts what was tested for a sample.
+  template <class Answer>
+  void note_tests(std::uint32_t sample, const Answer& answer) {
+    if (details_.empty()) return;
+    details_[sample].tests += answer.tests;
+    details_[sample].bounds_tests += answer.bounds_tests;
+  }
+  void shade_batch();
+  void shade_hits();
+  void emit_lights(std::size_t first_light, std::size_t last_light);
+  void emit_light(std::uint32_t number, std::span<const LitHit> hits);
+  std::array<double, 2> light_draws(const ShadingLight& light, const Node& node) const;
+  void answer_shadows();
+  void follow_transparent(bool through_all);
   void raise_highlights();
   void combine_lights();
   void spawn(Shade& shade);
-  void finish(std::uint32_t node, std::span<SampleResult> results);
+  void finish(std::uint32_t node);
 
   const ShadingScene& scene_;
   TraceScratch scratch_;
   ShadingCounts counts_;
   TreeObserver* observer_ = nullptr;
   std::size_t batch_ = 64;
-  std::span<const EyeSample> samples_;  ///< being traced
+  // Being traced:
+  std::span<const NearestQuery> rays_;
+  std::span<const EyeSample> samples_;
+  std::span<SampleResult> results_;
+  std::span<SampleDetail> details_;
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> free_;

@@ -41,8 +41,7 @@ struct RayTree::LitHit {
 
 /// Sections 2.4 steps 1 and 2 and 4: which lights matter at which hit, and the shadow rays they need. Hits go
 /// 64 at a time, light by light.
-void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
-                          std::span<const EyeSample> samples) {
+void RayTree::emit_lights(std::size_t first_light, std::size_t last_light) {
   lights_.clear();
   shadow_queries_.clear();
   shadow_owner_.clear();
@@ -59,29 +58,27 @@ void RayTree::emit_lights(std::size_t first_light, std::size_t last_light,
                  is_black(surface.diffuse)};
     }
     for (std::size_t l = first_light; l < last_light; ++l)
-      emit_light(static_cast<std::uint32_t>(l), std::span(hits).first(count), samples);
+      emit_light(static_cast<std::uint32_t>(l), std::span(hits).first(count));
   }
 }
 
 /// The two random numbers of a light at a hit.
-std::array<double, 2> RayTree::light_draws(const ShadingLight& light, const Node& node,
-                                           std::span<const EyeSample> samples) const {
-  const EyeSample& sample = samples[node.root];
+std::array<double, 2> RayTree::light_draws(const ShadingLight& light, const Node& node) const {
+  const EyeSample& sample = samples_[node.root];
   const SampleNumbers numbers(*scene_.settings, scene_.frame, sample.x, sample.y, sample.sample);
   return numbers.two_of_several(dimension(node.path, Purpose::kLight, light.sequence), light.turn,
                                 light.turns);
 }
 
 /// One light at the hits of aims_.
-void RayTree::emit_light(std::uint32_t number, std::span<const LitHit> hits,
-                         std::span<const EyeSample> samples) {
+void RayTree::emit_light(std::uint32_t number, std::span<const LitHit> hits) {
   const RenderSettings& settings = *scene_.settings;
   const Opacity mask =
       settings.transparent_shadows && scene_.compiled->has_transparent ? kOpaque : kAnyOpacity;
   const ShadingLight& light = scene_.lights[number];
   if (light.kind == LightKind::kArea) {
     for (std::size_t i = 0; i < hits.size(); ++i) {
-      const auto draws = light_draws(light, nodes_[shades_[hits[i].shade].node], samples);
+      const auto draws = light_draws(light, nodes_[shades_[hits[i].shade].node]);
       aims_.set_place(i, area_place(light, draws[0], draws[1]));
     }
   }
@@ -135,8 +132,8 @@ void RayTree::emit_light(std::uint32_t number, std::span<const LitHit> hits,
     ++counts_.shadow_rays;
     const Node& node = nodes_[shade.node];
     if (light.kind == LightKind::kExtended) {
-      const auto draws = light_draws(light, node, samples);
-      const Vec3 target = extended_target(light, world.point, samples[node.root].sample_number,
+      const auto draws = light_draws(light, node);
+      const Vec3 target = extended_target(light, world.point, samples_[node.root].sample_number,
                                           settings.strata(), draws[0], draws[1]);
       far = length(target);
       direction = target / far;
@@ -155,12 +152,12 @@ void RayTree::emit_light(std::uint32_t number, std::span<const LitHit> hits,
   }
 }
 
-void RayTree::answer_shadows(std::span<SampleResult> results) {
+void RayTree::answer_shadows() {
   if (shadow_queries_.empty()) return;
   if (shadow_answers_.size() < shadow_queries_.size()) shadow_answers_.resize(shadow_queries_.size());
   const bool walk = scene_.settings->transparent_shadows && scene_.compiled->has_transparent;
   if (walk && scene_.compiled->groups[0].count <= kFewLeaves) {
-    follow_transparent(true, results);
+    follow_transparent(true);
     return;
   }
   const std::span<OcclusionAnswer> answers(shadow_answers_.data(), shadow_queries_.size());
@@ -174,13 +171,11 @@ void RayTree::answer_shadows(std::span<SampleResult> results) {
   }
   for (std::size_t i = 0; i < shadow_queries_.size(); ++i) {
     PendingLight& pending = lights_[shadow_owner_[i]];
-    SampleResult& result = results[nodes_[shades_[pending.shade].node].root];
-    result.tests += answers[i].tests;
-    result.bounds_tests += answers[i].bounds_tests;
     pending.blocked = answers[i].occluded;
-    if (pending.blocked) ++counts_.shadow_hits;
+    counts_.shadow_hits += pending.blocked;
+    if (!details_.empty()) note_tests(nodes_[shades_[pending.shade].node].root, answers[i]);
   }
-  if (walk) follow_transparent(false, results);
+  if (walk) follow_transparent(false);
 }
 
 /// Takes the highlights of the lights that arrive to their exponents, those that need a real power together.

@@ -21,7 +21,7 @@ bool all_below(const Color& c, double limit) { return c.r < limit && c.g < limit
 /// is passed with it (the walk goes on behind it), so those that meet one walk through all leaves.
 /// `through_all`: so do all, where a question about opaque leaves has not been asked because it would cost as
 /// much.
-void RayTree::follow_transparent(bool through_all, std::span<SampleResult> results) {
+void RayTree::follow_transparent(bool through_all) {
   walks_.clear();
   for (std::uint32_t i = 0; i < shadow_queries_.size(); ++i) {
     if (!through_all && !shadow_answers_[i].others) continue;
@@ -64,8 +64,7 @@ void RayTree::follow_transparent(bool through_all, std::span<SampleResult> resul
       Walk& walk = walks_[i];
       PendingLight& pending = lights_[walk.pending];
       const Node& node = nodes_[shades_[pending.shade].node];
-      results[node.root].tests += answers[i].tests;
-      results[node.root].bounds_tests += answers[i].bounds_tests;
+      note_tests(node.root, answers[i]);
       if (!answers[i].found) continue;
       if (walk.opaque && !walk.through_all) {
         walk.through_all = true;
