@@ -13,8 +13,9 @@ namespace {
 
 using Place = fas::HyperTree::Place;
 
-/// Rays go through the hierarchy in packs, so that boxes cost little: trees spare them exact tests.
-constexpr fas::Choice::Saving kSaving{0.25, 2};
+/// Rays go through the hierarchy in packs, so that boxes cost little: trees spare them exact tests. Rays
+/// through trees of beams go alone.
+constexpr fas::Choice::Saving kFlatSaving{0.25, 3}, kDeepSaving{0.25, 8};
 
 std::size_t mask_number(Opacity mask) { return static_cast<std::size_t>(mask) - 1; }
 
@@ -81,7 +82,7 @@ ClassTracer::ClassTracer(const CompiledScene& scene, std::unique_ptr<fas::HyperT
     : scene_(scene),
       flat_(std::move(tree)),
       choice_(std::make_unique<fas::Choice>(expected, fas::Choice::kMakePrimitive * scene.groups[0].count,
-                                            kSaving)),
+                                            kFlatSaving)),
       from_apex_(from_apex),
       always_(always) {}
 
@@ -89,7 +90,7 @@ ClassTracer::ClassTracer(const CompiledScene& scene, std::unique_ptr<fas::BeamTr
                          bool always)
     : scene_(scene),
       beams_(std::move(tree)),
-      choice_(std::make_unique<fas::Choice>(expected, 0, kSaving)),
+      choice_(std::make_unique<fas::Choice>(expected, 0, kDeepSaving)),
       always_(always) {}
 
 void ClassTracer::ask(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
@@ -130,7 +131,12 @@ template <class Query, class Answer>
 void ask_rest(const CompiledScene& scene, std::span<const Query> queries, std::span<Answer> answers,
               Batch& batch, TraceScratch& scratch) {
   if (batch.rest.empty()) return;
-  HierarchyPacks(scene, scratch).ask(queries, answers, batch.rest);
+  HierarchyPacks packs(scene, scratch);
+  // Those of one class stand in rising order.
+  if (batch.rest_of_classes.size() == 1 && batch.rest.size() == queries.size())
+    packs.ask(queries, answers);
+  else
+    packs.ask(queries, answers, batch.rest);
   std::size_t k = 0;
   for (const Batch::RestOfClass& part : batch.rest_of_classes) {
     HierarchyCounts sum;

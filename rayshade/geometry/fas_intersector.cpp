@@ -5,6 +5,7 @@
 // and extended lights) start their traversals from the leaves of a five-dimensional one. What is not bounded
 // is tested apart. Trees only choose which leaves of the scene are tested.
 #include <algorithm>
+#include <numeric>
 
 #include "rayshade/geometry/class_tracer.h"
 #include "rayshade/geometry/intersector.h"
@@ -116,6 +117,12 @@ class FasIntersector final : public Intersector {
   }
   std::size_t class_of(const OcclusionQuery& query) const { return light_class(query.light); }
 
+  /// Whether two queries are of one class; false where it takes longer to tell.
+  static bool of_one_class(const NearestQuery& a, const NearestQuery& b) {
+    return a.kind == b.kind && a.light == b.light;
+  }
+  static bool of_one_class(const OcclusionQuery& a, const OcclusionQuery& b) { return a.light == b.light; }
+
   void report_class(std::size_t number, const TraceScratch& scratch, ClassReport& into) const {
     using Rays = ClassReport::Rays;
     using Tree = ClassReport::Tree;
@@ -152,17 +159,36 @@ class FasIntersector final : public Intersector {
     Batch& batch = *static_cast<Batch*>(scratch.batch.get());
     batch.which.resize(std::max(batch.which.size(), classes_.size()));
     batch.in_hierarchy.resize(batch.which.size());
+    if (batch.all.empty()) {
+      batch.all.resize(kMostAtOnce);
+      std::iota(batch.all.begin(), batch.all.end(), 0u);
+    }
     for (std::size_t first = 0; first < queries.size(); first += kMostAtOnce) {
       const std::size_t count = std::min(kMostAtOnce, queries.size() - first);
       const auto some = queries.subspan(first, count);
-      for (std::uint32_t i = 0; i < count; ++i) batch.which[class_of(some[i])].push_back(i);
-      for (std::size_t c = 0; c < classes_.size(); ++c) {
-        if (batch.which[c].empty()) continue;
+      const auto into = answers.subspan(first, count);
+      const auto ask_class = [&](std::size_t c, std::span<const std::uint32_t> which) {
         batch.counts = &batch.in_hierarchy[c];
-        classes_[c].ask(some, answers.subspan(first, count), batch.which[c], *scratch.trees, batch, scratch);
-        batch.which[c].clear();
+        classes_[c].ask(some, into, which, *scratch.trees, batch, scratch);
+      };
+      if (std::all_of(some.begin(), some.end(),
+                      [&](const Query& query) { return of_one_class(query, some[0]); })) {
+        ask_class(class_of(some[0]), std::span(batch.all).first(count));
+      } else {
+        for (std::size_t i = 0; i < count;) {
+          std::size_t end = i + 1;
+          while (end < count && of_one_class(some[i], some[end])) ++end;
+          std::vector<std::uint32_t>& which = batch.which[class_of(some[i])];
+          which.insert(which.end(), batch.all.begin() + i, batch.all.begin() + end);
+          i = end;
+        }
+        for (std::size_t c = 0; c < classes_.size(); ++c) {
+          if (batch.which[c].empty()) continue;
+          ask_class(c, batch.which[c]);
+          batch.which[c].clear();
+        }
       }
-      ask_rest(scene_, some, answers.subspan(first, count), batch, scratch);
+      ask_rest(scene_, some, into, batch, scratch);
     }
   }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "rayshade/geometry/hierarchy_packs.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "fas/pack_walk.h"
@@ -14,6 +16,23 @@ std::size_t octant(const Vec3& d) {
          4 * static_cast<std::size_t>(std::signbit(d.z));
 }
 
+/// Whether queries can share a pack.
+template <class Query>
+bool alike(std::span<const Query> queries, const std::uint32_t* places, std::size_t count) {
+  const auto query = [&](std::size_t k) -> const Query& { return queries[places ? places[k] : k]; };
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  const Vec3 first = query(0).ray.direction;
+  const Opacity mask = query(0).mask;
+  std::uint64_t signs = 0;
+  unsigned masks = 0;
+  for (std::size_t k = 1; k < count; ++k) {
+    const Vec3& d = query(k).ray.direction;
+    signs |= (bits(d.x) ^ bits(first.x)) | (bits(d.y) ^ bits(first.y)) | (bits(d.z) ^ bits(first.z));
+    masks |= static_cast<unsigned>(query(k).mask) ^ static_cast<unsigned>(mask);
+  }
+  return signs >> 63 == 0 && masks == 0;
+}
+
 }  // namespace
 
 HierarchyPacks::HierarchyPacks(const CompiledScene& scene, TraceScratch& scratch)
@@ -21,51 +40,67 @@ HierarchyPacks::HierarchyPacks(const CompiledScene& scene, TraceScratch& scratch
 
 void HierarchyPacks::ask(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
                          std::span<const std::uint32_t> which) {
-  ask(queries, answers, which.size(), [&](std::size_t k) { return which[k]; });
+  ask(queries, answers, which.data(), which.size());
 }
 
 void HierarchyPacks::ask(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
                          std::span<const std::uint32_t> which) {
-  ask(queries, answers, which.size(), [&](std::size_t k) { return which[k]; });
+  ask(queries, answers, which.data(), which.size());
 }
 
 void HierarchyPacks::ask(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers) {
-  ask(queries, answers, queries.size(), [](std::size_t k) { return static_cast<std::uint32_t>(k); });
+  ask(queries, answers, nullptr, queries.size());
 }
 
 void HierarchyPacks::ask(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers) {
-  ask(queries, answers, queries.size(), [](std::size_t k) { return static_cast<std::uint32_t>(k); });
+  ask(queries, answers, nullptr, queries.size());
 }
 
-template <class Query, class Answer, class Place>
-void HierarchyPacks::ask(std::span<const Query> queries, std::span<Answer> answers, std::size_t count,
-                         const Place& place) {
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::uint32_t i = place(k);
-    const Query& query = queries[i];
-    Waiting& waiting = waiting_[octant(query.ray.direction) + 8 * (static_cast<std::size_t>(query.mask) - 1)];
-    waiting.places[waiting.count++] = i;
-    if (waiting.count == RayPack::kMost) trace(queries, answers, waiting);
+/// Neighbours are packed as they come where they are alike, as most are; others wait for their like.
+template <class Query, class Answer>
+void HierarchyPacks::ask(std::span<const Query> queries, std::span<Answer> answers,
+                         const std::uint32_t* places, std::size_t count) {
+  for (std::size_t first = 0; first < count; first += RayPack::kMost) {
+    const std::size_t n = std::min<std::size_t>(RayPack::kMost, count - first);
+    const std::span<const Query> some = places ? queries : queries.subspan(first);
+    const std::uint32_t* const own = places ? places + first : nullptr;
+    if (alike(some, own, n)) {
+      trace(some, places ? answers : answers.subspan(first), own, n);
+      continue;
+    }
+    for (std::size_t k = first; k < first + n; ++k) {
+      const auto i = places ? places[k] : static_cast<std::uint32_t>(k);
+      const Query& query = queries[i];
+      Waiting& waiting =
+          waiting_[octant(query.ray.direction) + 8 * (static_cast<std::size_t>(query.mask) - 1)];
+      waiting.places[waiting.count++] = i;
+      if (waiting.count < RayPack::kMost) continue;
+      trace(queries, answers, waiting.places.data(), waiting.count);
+      waiting.count = 0;
+    }
   }
   for (Waiting& waiting : waiting_) {
-    if (waiting.count > 0) trace(queries, answers, waiting);
+    if (waiting.count > 0) trace(queries, answers, waiting.places.data(), waiting.count);
+    waiting.count = 0;
   }
 }
 
 template <class Query, class Answer>
-void HierarchyPacks::trace(std::span<const Query> queries, std::span<Answer> answers, Waiting& waiting) {
-  if (static_cast<int>(waiting.count) < PackTracer::kFewest) {
-    for (std::uint32_t k = 0; k < waiting.count; ++k)
-      ask_world(scene_, queries[waiting.places[k]], answers[waiting.places[k]], scratch_);
-  } else {
-    walk(queries, answers, waiting);
+void HierarchyPacks::trace(std::span<const Query> queries, std::span<Answer> answers,
+                           const std::uint32_t* places, std::size_t count) {
+  if (count >= PackTracer::kFewest) {
+    walk(queries, answers, places, count);
+    return;
   }
-  waiting.count = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = places ? places[k] : k;
+    ask_world(scene_, queries[i], answers[i], scratch_);
+  }
 }
 
 void HierarchyPacks::walk(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
-                          const Waiting& waiting) {
-  tracer_.load(queries, answers, waiting.places.data(), static_cast<int>(waiting.count));
+                          const std::uint32_t* places, std::size_t count) {
+  tracer_.load(queries, answers, places, static_cast<int>(count));
   const RayPack::Mask all = tracer_.pack().all();
   for (LeafId leaf = world_.first; leaf < world_.first + world_.unbounded; ++leaf) tracer_.improve(leaf, all);
   through_hierarchy(tracer_.opacity(), all,
@@ -77,8 +112,8 @@ void HierarchyPacks::walk(std::span<const NearestQuery> queries, std::span<Neare
 }
 
 void HierarchyPacks::walk(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
-                          const Waiting& waiting) {
-  tracer_.load(queries, waiting.places.data(), static_cast<int>(waiting.count));
+                          const std::uint32_t* places, std::size_t count) {
+  tracer_.load(queries, places, static_cast<int>(count));
   RayPack::Mask open = tracer_.pack().all();
   const auto try_leaves = [&](LeafId first, LeafId last, RayPack::Mask rays) {
     RayPack::Mask known = 0;

@@ -35,13 +35,17 @@ class HierarchyPacks {
     std::array<std::uint32_t, RayPack::kMost> places;
   };
 
-  template <class Query, class Answer, class Place>
-  void ask(std::span<const Query> queries, std::span<Answer> answers, std::size_t count, const Place& place);
+  // `places`: the numbers of `count` queries; null: the first ones.
   template <class Query, class Answer>
-  void trace(std::span<const Query> queries, std::span<Answer> answers, Waiting& waiting);
-  void walk(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers, const Waiting& waiting);
+  void ask(std::span<const Query> queries, std::span<Answer> answers, const std::uint32_t* places,
+           std::size_t count);
+  template <class Query, class Answer>
+  void trace(std::span<const Query> queries, std::span<Answer> answers, const std::uint32_t* places,
+             std::size_t count);
+  void walk(std::span<const NearestQuery> queries, std::span<NearestAnswer> answers,
+            const std::uint32_t* places, std::size_t count);
   void walk(std::span<const OcclusionQuery> queries, std::span<OcclusionAnswer> answers,
-            const Waiting& waiting);
+            const std::uint32_t* places, std::size_t count);
   /// Tests what the hierarchy holds: `test(first, last, rays, shortened)` tests leaves, adds the rays whose
   /// far limits have changed to `shortened`, and returns those that need nothing more.
   template <class Test>
