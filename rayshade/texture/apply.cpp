@@ -24,10 +24,10 @@ struct Evaluation {
   const SampleContext& sample;
   Moment moment;
   Vec3 point, normal;  ///< in the space outside the node whose textures are applied
-  AffinePair frame;    ///< primitive space -> that space; kept up to date only where `framed`
-  bool framed = false;
-  unsigned gloss_count = 0;
   Surface& surface;
+  /// Primitive space -> that space; none: the identity. Kept up to date only where it is needed.
+  std::optional<AffinePair> frame = std::nullopt;
+  unsigned gloss_count = 0;
 };
 
 /// The transform of a texture at this moment, and the point in its space.
@@ -57,7 +57,7 @@ TextureCoordinates map_point(const CompiledTexture& texture, const TextureSpace&
   TextureCoordinates c;
   if (texture.mapping.kind() == MappingKind::kUv) {
     // The inverse of the frame first and the texture's transform after it: the original's order (D4).
-    Vec3 x = e.frame.inverse.point(space.q);
+    Vec3 x = e.frame ? e.frame->inverse.point(space.q) : space.q;
     if (space.map) x = space.map->forward.point(x);
     c = texture_coordinates(e.scene, e.hit, x, e.local.geometric_normal);
   } else {
@@ -74,8 +74,11 @@ TextureCoordinates map_point(const CompiledTexture& texture, const TextureSpace&
 /// Step 4: takes the tangents to model space, with the linear part of the texture's transform mixed in. The
 /// frame is one factor too many for those mappings that are in model space already (D8).
 void finish_tangents(const TextureSpace& space, const Evaluation& e, TextureCoordinates& c) {
-  const Affine& frame = e.frame.forward;
-  const Vec3 du = frame.vector(c.du), dv = frame.vector(c.dv), g = frame.vector(e.local.geometric_normal);
+  Vec3 du = c.du, dv = c.dv, g = e.local.geometric_normal;
+  if (e.frame) {
+    const Affine& frame = e.frame->forward;
+    du = frame.vector(du), dv = frame.vector(dv), g = frame.vector(g);
+  }
   const Affine linear = space.map ? space.map->forward : Affine{};
   const auto tangent = [&](const Vec3& row) {
     return normalize_above_epsilon(row.x * du + row.y * dv + row.z * g);
@@ -215,14 +218,10 @@ void apply_texture(const CompiledTexture& texture, Evaluation& e) {
   }
 }
 
-/// How far outward textures matter, and whether the frame must be kept.
-struct PathNeeds {
-  unsigned levels = 0;  ///< one more than the last level whose textures matter
-  bool frame = false;
-};
-
 PathNeeds needs_of(const CompiledScene& scene, const CompiledTextures& textures, const Hit& hit, double time,
                    TraceScratch& scratch, bool transmission_only) {
+  const std::uint32_t path = scene.leaves[hit.leaf].path;
+  if (hit.instances.count == 0) return path == kNone ? PathNeeds{} : textures.needs(path, transmission_only);
   PathNeeds needs;
   PathWalk walk(scene, hit, time, scratch);
   PathLevel level;
@@ -238,13 +237,12 @@ PathNeeds needs_of(const CompiledScene& scene, const CompiledTextures& textures,
 
 /// Takes the frame one level outward.
 void extend_frame(Evaluation& e, const AffinePair& map) {
-  if (!e.framed) {
+  if (!e.frame) {
     e.frame = map;
-    e.framed = true;
     return;
   }
-  e.frame.forward = then(e.frame.forward, map.forward);
-  e.frame.inverse = then(map.inverse, e.frame.inverse);
+  e.frame->forward = then(e.frame->forward, map.forward);
+  e.frame->inverse = then(map.inverse, e.frame->inverse);
 }
 
 /// The point that textures see: along the ray, in fused arithmetic. On a surface in a plane at which a
@@ -273,9 +271,8 @@ const Surface& evaluate_textured_hit(const CompiledScene& scene, const CompiledT
   }
   const LocalHit local = resolve_local(scene, hit, world_ray, scratch);
   textured = surface_of(scene, hit);
-  Evaluation e{
-      scene, hit,   local, sample,  {world_ray.time, scene.frame}, textured_point(local), local.normal,
-      {},    false, 0,     textured};
+  Evaluation e{scene,        hit,     local, sample, {world_ray.time, scene.frame}, textured_point(local),
+               local.normal, textured};
   Vec3 geometric = local.geometric_normal;
   Vec3 exact = local.point;
   double error = local.error;
@@ -321,9 +318,8 @@ Transmittance evaluate_transmittance(const CompiledScene& scene, const CompiledT
   // Nothing that changes transmission reads the shading normal, so it is not carried outward.
   const SampleContext sample;
   Surface textured = surface_of(scene, hit);
-  Evaluation e{
-      scene, hit,   local, sample,  {world_ray.time, scene.frame}, textured_point(local), local.normal,
-      {},    false, 0,     textured};
+  Evaluation e{scene,        hit,     local, sample, {world_ray.time, scene.frame}, textured_point(local),
+               local.normal, textured};
   PathWalk walk(scene, hit, world_ray.time, scratch);
   PathLevel level;
   for (unsigned i = 0; i < needs.levels && walk.next(level); ++i) {

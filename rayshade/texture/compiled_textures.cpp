@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "rayshade/image/reader.h"
@@ -172,6 +173,22 @@ CompiledTextures::CompiledTextures(const CompiledScene& compiled, Provider& prov
       list.textures.push_back(compile(source));
       list.needs_frame = list.needs_frame || list.textures.back().needs_frame;
       list.changes_transmission = list.changes_transmission || list.textures.back().changes_transmission;
+    }
+  }
+  for (const bool transmission_only : {false, true}) {
+    std::vector<PathNeeds>& needs = needs_[transmission_only];
+    needs.reserve(compiled.path_nodes.size());
+    for (const PathNode& node : compiled.path_nodes) {  // parents come first
+      PathNeeds own;
+      if (node.parent != kNone && needs[node.parent].levels > 0) {
+        own = needs[node.parent];
+        ++own.levels;
+      }
+      if (node.textures != kNone && (!transmission_only || lists_[node.textures].changes_transmission)) {
+        own.levels = std::max(own.levels, 1u);
+        own.frame = own.frame || lists_[node.textures].needs_frame;
+      }
+      needs.push_back(own);
     }
   }
 }

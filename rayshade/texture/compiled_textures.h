@@ -47,6 +47,12 @@ struct CompiledTextureList {
   bool changes_transmission = false;
 };
 
+/// How far outward the textures of a hit matter, and whether the map from its primitive must be kept.
+struct PathNeeds {
+  unsigned levels = 0;  ///< one more than the last level whose textures matter
+  bool frame = false;
+};
+
 class CompiledTextures {
  public:
   CompiledTextures() = default;
@@ -57,6 +63,11 @@ class CompiledTextures {
 
   /// The list of that index in Scene::texture_lists; it must be worn by a path node.
   const CompiledTextureList& list(std::uint32_t texture_list) const { return lists_[texture_list]; }
+  /// Of hits on leaves with this path that went through no instance; `transmission_only`: only textures that
+  /// change transmission matter.
+  const PathNeeds& needs(std::uint32_t path, bool transmission_only) const {
+    return needs_[transmission_only][path];
+  }
   /// Bytes of images and colour maps, for the statistics.
   std::uint64_t bytes() const { return bytes_; }
   /// Files read.
@@ -64,6 +75,7 @@ class CompiledTextures {
 
  private:
   std::vector<CompiledTextureList> lists_;
+  std::vector<PathNeeds> needs_[2];  ///< by path node
   std::vector<std::unique_ptr<ColorMap>> color_maps_;
   std::vector<std::unique_ptr<Image>> images_;
   std::uint64_t bytes_ = 0;
