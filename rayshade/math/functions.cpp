@@ -22,7 +22,8 @@ double acos(double x) { return Sleef_cinz_acosd1_u10purec(x); }
 double atan(double x) { return Sleef_cinz_atand1_u10purec(x); }
 double atan2(double y, double x) { return Sleef_cinz_atan2d1_u10purec(y, x); }
 double exp(double x) { return narrow(Sleef_cinz_expd2_u10sse2(wide(x))); }
-double log(double x) { return Sleef_cinz_logd1_u10purec(x); }
+double log(double x) { return narrow(Sleef_cinz_logd2_u10sse2(wide(x))); }
+double pow_by_log(double x, double y) { return y == 0 ? 1 : exp(y * log(x)); }
 double hypot(double x, double y) { return Sleef_cinz_hypotd1_u05purec(x, y); }
 double cbrt(double x) { return Sleef_cinz_cbrtd1_u10purec(x); }
 

@@ -23,6 +23,9 @@ double atan2(double y, double x);
 double exp(double x);
 double log(double x);
 double pow(double x, double y);
+/// pow(x, y) for x >= 0 in half the time, for colours: exp(y log x), whose relative error is up to
+/// 3 + 2 |y log x| units of 2^-53. 1 for y = 0.
+double pow_by_log(double x, double y);
 /// out[i] = pow(x[i], y[i]), to the same bits, at a fraction of the time. `out` may be `x` or `y`.
 void pow_each(const double* x, const double* y, double* out, std::size_t count);
 double hypot(double x, double y);

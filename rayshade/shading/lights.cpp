@@ -111,7 +111,7 @@ double spot_factor(const ShadingLight& light, double x) {
     }
   }
   if (light.exponent == 0) return ramp;
-  return fn::pow(x, light.exponent) * ramp;
+  return fn::pow_by_log(x, light.exponent) * ramp;
 }
 
 Vec3 extended_target(const ShadingLight& light, const Vec3& point, int sample_number, int side, double xi,

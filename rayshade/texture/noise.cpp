@@ -167,7 +167,7 @@ Vec3 vfbm(const Vec3& point, double omega, double lambda, int octaves) {
 }
 
 double marble(const Vec3& point) {
-  return fn::pow(0.5 * (fn::sin(8 * chaos(point, 6) + 7 * point.z) + 1), 0.77);
+  return fn::pow_by_log(0.5 * (fn::sin(8 * chaos(point, 6) + 7 * point.z) + 1), 0.77);
 }
 
 double fbm_omega(double h, double lambda) { return fn::pow(lambda, -(1 + 2 * h) / 2); }

@@ -84,7 +84,7 @@ double sky_intensity(const Vec3& q, const FbmParameters& parameters, double expo
   }
   // Most of a sky is clear or covered: 1 to any power is 1, and 0 to a positive one 0.
   const bool unchanged = exponent == 0 || intensity == 1 || (intensity == 0 && exponent > 0);
-  return unchanged ? intensity : fn::pow(intensity, exponent);
+  return unchanged ? intensity : fn::pow_by_log(intensity, exponent);
 }
 
 CloudValue cloud_value(const Vec3& q, const Vec3& origin, const Vec3& direction, const CloudParameters& p) {

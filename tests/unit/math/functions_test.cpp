@@ -86,6 +86,24 @@ TEST(FunctionsTest, BitsAreTheSameEverywhere) {
   EXPECT_EQ(hash, 0x46619d31709f0dbbu);
 }
 
+TEST(FunctionsTest, PowersByLogarithmsKeepTheirBound) {
+  std::mt19937_64 random(43);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 100'000; ++i) {
+    const double x = i % 2 ? unit(random) : 1 - 1e-4 * unit(random),
+                 y = i % 3 ? 2 * unit(random) : 300 * unit(random);
+    const long double truth = std::pow(static_cast<long double>(x), static_cast<long double>(y));
+    if (truth < 1e-300L) continue;
+    const long double error = std::fabs(static_cast<long double>(fn::pow_by_log(x, y)) / truth - 1);
+    const auto bound = static_cast<long double>((3 + 2 * std::fabs(y * std::log(x))) * 0x1p-53);
+    ASSERT_LE(error, bound) << x << " to the " << y;
+  }
+  EXPECT_EQ(fn::pow_by_log(0, 0), 1);
+  EXPECT_EQ(fn::pow_by_log(0, 0.77), 0);
+  EXPECT_EQ(fn::pow_by_log(1, 7.5), 1);
+  EXPECT_TRUE(std::isinf(fn::pow_by_log(0, -2)));
+}
+
 // Whatever the width of the processor's vectors: the bits of one power.
 TEST(FunctionsTest, PowersTogetherAreThoseOneByOne) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
