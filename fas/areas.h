@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// What one face of a flat hyper-tree sees of every primitive: computed when a cell first wants it, and kept,
-// since every level of the tree asks for it again, and projecting a primitive costs more than all else that
-// is done with it there.
+// What the faces of flat hyper-trees see of primitives. Every level of a tree asks for it again, and
+// projecting a primitive costs more than all else that is done with it there; but what is asked for again is
+// asked for soon, by cells near each other. So every thread remembers the latest, and trees hold none:
+// their memory is that of the cells that rays go through, not of the scene.
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-
-#include "fas/pool.h"
+#include <limits>
+#include <memory>
 
 namespace fas {
 
@@ -24,33 +24,37 @@ struct Area {
   double inside[3];  ///< of covers: see Footprint
 };
 
-/// Thread-safe for any number of readers and writers; what was kept never moves.
-class AreaStore {
+/// Of one thread.
+class AreaCache {
  public:
-  /// Primitives are numbered below `count`. Without memory for it nothing is kept, ever. Returns the bytes
-  /// taken. Not thread-safe.
-  std::size_t start(std::uint32_t count, Arena& arena);
-  /// Nothing is kept any more; memory is the pool's. No thread may be tracing.
-  void clear() { chunks_ = nullptr; }
-
-  /// What is kept of a primitive; null: nothing.
-  const Area* find(std::uint32_t primitive) const {
-    if (!chunks_) return nullptr;
-    const Chunk* chunk = chunks_[primitive / kChunk].load(std::memory_order_acquire);
-    return chunk ? chunk->areas[primitive % kChunk].load(std::memory_order_acquire) : nullptr;
+  /// The area of a primitive on a face, as `project(area)` finds it, which returns false where the face does
+  /// not see the primitive; then null. `face` is a number of its own for every face of every tree. Valid
+  /// until the next call.
+  template <class Project>
+  const Area* find(std::uint32_t face, std::uint32_t primitive, const Project& project) {
+    if (!slots_) slots_ = std::make_unique<Slots>();
+    // Neighbours by number are neighbours in space, and asked for together.
+    Slot& slot = (*slots_)[(primitive + face * kStep) % kSlots];
+    const std::uint64_t key = std::uint64_t{face} << 32 | primitive;
+    if (slot.key != key) {
+      slot.key = kNobody;  // in case that project() throws
+      slot.seen = project(slot.area);
+      slot.key = key;
+    }
+    return slot.seen ? &slot.area : nullptr;
   }
-  /// What stands for primitives that the face does not see.
-  static const Area& unseen();
-  /// Keeps a copy of `area`, or by unseen() that it does not see the primitive, as far as there is memory.
-  /// Returns the bytes taken.
-  std::size_t keep(std::uint32_t primitive, const Area& area, Arena& arena);
 
  private:
-  static constexpr std::uint32_t kChunk = 64;  ///< neighbours by number are neighbours in space
-  struct Chunk {
-    std::array<std::atomic<const Area*>, kChunk> areas{};
+  static constexpr std::size_t kSlots = 4096;
+  static constexpr std::uint32_t kStep = 691;  ///< faces of one scene seldom drive each other out
+  static constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
+  struct Slot {
+    std::uint64_t key = kNobody;
+    bool seen;
+    Area area;
   };
-  std::atomic<Chunk*>* chunks_ = nullptr;
+  using Slots = std::array<Slot, kSlots>;
+  std::unique_ptr<Slots> slots_;  ///< none before a node is made
 };
 
 }  // namespace fas

@@ -25,8 +25,6 @@ constexpr std::uint32_t kSmallSubtree = 4;
 /// How many entries are looked at to find the extent of what a face sees: enough for their boxes to be small
 /// beside it.
 constexpr std::size_t kExtentEntries = 1024;
-/// Areas of primitives are kept until this part of the memory of all trees is in use.
-constexpr double kAreaShare = 0.25;
 /// All coordinates are in units of the root square, which has 2^24 of them on a side. A ray's own coordinate
 /// is cut off to whole units and has errors far below one, so areas are grown by one.
 constexpr double kUnits = 0x1p24, kPad = 1;
@@ -49,6 +47,7 @@ struct TreeScratch {
   std::vector<std::uint32_t> stack;
   std::vector<Area> areas;
   std::vector<std::uint32_t> order;
+  AreaCache latest;
 };
 
 ThreadState::ThreadState(Pool& pool) : arena(pool), scratch(std::make_unique<TreeScratch>()) {}
@@ -67,23 +66,16 @@ struct alignas(16) HyperTree::Node {
 /// Areas of a face in units of its root square.
 class HyperTree::Square {
  public:
-  Square(HyperTree& tree, Root& root, int face, ThreadState& state, TreeCounts& counts)
+  Square(const HyperTree& tree, const Root& root, int face, TreeScratch& scratch)
       : tree_(tree),
         plane_(*tree.planes_[static_cast<std::size_t>(face)]),
         root_(root),
-        state_(state),
-        counts_(counts) {}
+        face_(static_cast<std::uint32_t>(6 * tree.number_) + static_cast<std::uint32_t>(face)),
+        scratch_(scratch) {}
 
   /// Null: the face does not see the primitive. Valid until the next call.
   const Area* primitive(std::uint32_t id) {
-    const Area* area = root_.areas.find(id);
-    if (!area) {
-      area = project(id) ? &area_ : &AreaStore::unseen();
-      const Pool& pool = tree_.pool_;
-      if (static_cast<double>(pool.used()) < kAreaShare * static_cast<double>(pool.budget()))
-        counts_.bytes += root_.areas.keep(id, *area, state_.arena);
-    }
-    return area != &AreaStore::unseen() ? area : nullptr;
+    return scratch_.latest.find(face_, id, [&](Area& out) { return project(id, out); });
   }
   bool subtree(const Candidates::Child& child, Area& out) const {
     Footprint f;
@@ -96,12 +88,11 @@ class HyperTree::Square {
   }
 
  private:
-  bool project(std::uint32_t id) {
-    Geometry& geometry = state_.scratch->geometry;
+  bool project(std::uint32_t id, Area& out) const {
+    Geometry& geometry = scratch_.geometry;
     tree_.candidates_.geometry(id, geometry);
     Footprint f;
     if (!plane_.project(geometry, f)) return false;
-    Area& out = area_;
     place(f, out);
     out.id = id;
     out.cuts = static_cast<std::uint8_t>(f.cuts);
@@ -122,12 +113,11 @@ class HyperTree::Square {
     out.y0 = (f.v0 - root_.v0) * root_.scale - kPad, out.y1 = (f.v1 - root_.v0) * root_.scale + kPad;
     out.z0 = f.z0, out.z1 = f.z1;
   }
-  HyperTree& tree_;
+  const HyperTree& tree_;
   const Plane& plane_;
-  Root& root_;
-  ThreadState& state_;
-  TreeCounts& counts_;
-  Area area_;
+  const Root& root_;
+  std::uint32_t face_;
+  TreeScratch& scratch_;
 };
 
 View make_view(View::Kind kind, const Point& point, const Bounds& bounds, double condition) {
@@ -162,7 +152,6 @@ void HyperTree::clear() {
   for (Root& root : roots_) {
     root.state.store(0, std::memory_order_relaxed);
     root.node = nullptr;
-    root.areas.clear();
   }
 }
 
@@ -230,7 +219,7 @@ bool HyperTree::make_root(int face, ThreadState& state, TreeCounts& counts) {
   root.node->count = 1;
   root.node->below = candidates_.count();
   counts.nodes += 1;
-  counts.bytes += sizeof(Node) + sizeof(std::uint32_t) + root.areas.start(candidates_.count(), state.arena);
+  counts.bytes += sizeof(Node) + sizeof(std::uint32_t);
   counts.nanoseconds += static_cast<std::uint64_t>((Clock::now() - start).count());
   root.state.store(2, std::memory_order_release);
   return true;
@@ -282,7 +271,7 @@ std::uintptr_t HyperTree::make_children(Node& node, Root& root, int face, const 
                                         ThreadState& state, TreeCounts& counts) {
   const Clock::time_point start = Clock::now();
   TreeScratch& scratch = *state.scratch;
-  Square square(*this, root, face, state, counts);
+  Square square(*this, root, face, scratch);
   const double size = std::ldexp(0.5, kBits - cell.depth);
   Part parts[4];
   Truncation truncation[4];
@@ -365,7 +354,7 @@ std::uintptr_t HyperTree::make_children(Node& node, Root& root, int face, const 
 std::uintptr_t HyperTree::make_leaf(Node& node, Root& root, int face, const Cell& cell, ThreadState& state,
                                     TreeCounts& counts) {
   TreeScratch& scratch = *state.scratch;
-  Square square(*this, root, face, state, counts);
+  Square square(*this, root, face, scratch);
   const Part part{static_cast<double>(cell.u), static_cast<double>(cell.v),
                   std::ldexp(1.0, kBits - cell.depth)};
   std::vector<std::uint32_t>& stack = scratch.stack;

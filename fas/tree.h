@@ -137,7 +137,6 @@ class HyperTree {
     std::atomic<std::uint32_t> state{0};  ///< 0 nothing, 1 in the making, 2 there, 3 given up
     double u0 = 0, v0 = 0, scale = 0, cell = 0;
     Node* node = nullptr;
-    AreaStore areas;
   };
   struct Cell {
     std::uint32_t u, v;  ///< corner, in units of the root square

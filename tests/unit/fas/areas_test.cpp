@@ -1,81 +1,48 @@
 // SPDX-License-Identifier: MIT
-// Areas of primitives: what is kept is found again, by every thread, and a spent budget only means that less
-// is.
+// Areas of primitives: each is that of its own primitive and face, whatever was asked for before, and what is
+// asked for again soon is not computed again.
 #include "fas/areas.h"
 
 #include <gtest/gtest.h>
 
-#include <thread>
-#include <vector>
+#include <random>
 
 namespace fas {
 namespace {
 
-Area area_of(std::uint32_t id) {
-  Area area{};
-  area.id = id;
-  area.x0 = id;
-  area.z1 = 2.0 * id;
-  return area;
+class AreaCacheTest : public testing::Test {
+ protected:
+  static bool sees(std::uint32_t face, std::uint32_t primitive) { return (face + primitive) % 5 != 0; }
+  /// Asks, and checks the answer.
+  void ask(std::uint32_t face, std::uint32_t primitive) {
+    const Area* area = cache_.find(face, primitive, [&](Area& out) {
+      ++projections_;
+      out.id = primitive;
+      out.x0 = face;
+      return sees(face, primitive);
+    });
+    ASSERT_EQ(area != nullptr, sees(face, primitive)) << face << " " << primitive;
+    if (!area) return;
+    ASSERT_EQ(area->id, primitive);
+    ASSERT_EQ(area->x0, face);
+  }
+  AreaCache cache_;
+  int projections_ = 0;
+};
+
+TEST_F(AreaCacheTest, WhatIsAskedForAgainIsThere) {
+  for (int round = 0; round < 3; ++round) {
+    for (std::uint32_t primitive = 40; primitive < 140; ++primitive)
+      for (const std::uint32_t face : {0u, 3u, 17u}) ask(face, primitive);
+  }
+  EXPECT_EQ(projections_, 300);
 }
 
-TEST(AreaStore, KeepsWhatIsSeenAndWhatIsNot) {
-  Pool pool(std::size_t{8} << 20);
-  Arena arena(pool);
-  AreaStore store;
-  EXPECT_EQ(store.find(5), nullptr);  // before start()
-  EXPECT_EQ(store.keep(5, area_of(5), arena), 0u);
-  EXPECT_GT(store.start(1000, arena), 0u);
-  EXPECT_EQ(store.find(999), nullptr);
-  EXPECT_GE(store.keep(999, area_of(999), arena), sizeof(Area));
-  store.keep(998, AreaStore::unseen(), arena);
-  ASSERT_NE(store.find(999), nullptr);
-  EXPECT_EQ(store.find(999)->id, 999u);
-  EXPECT_EQ(store.find(999)->z1, 1998);
-  EXPECT_EQ(store.find(998), &AreaStore::unseen());
-  EXPECT_EQ(store.find(997), nullptr);
-  store.clear();
-  EXPECT_EQ(store.find(999), nullptr);
-}
-
-TEST(AreaStore, DoesWithoutMemory) {
-  Pool pool(Pool::kChunk);
-  Arena arena(pool);
-  AreaStore store;
-  ASSERT_GT(store.start(4096, arena), 0u);
-  std::size_t bytes = 0;
-  for (std::uint32_t i = 0; i < 4096; ++i) bytes += store.keep(i, area_of(i), arena);
-  EXPECT_LT(bytes, Pool::kChunk);
-  std::uint32_t kept = 0;
-  for (std::uint32_t i = 0; i < 4096; ++i) {
-    if (const Area* area = store.find(i)) {
-      ++kept;
-      ASSERT_EQ(area->id, i);
-    }
-  }
-  EXPECT_GT(kept, 100u);
-  EXPECT_LT(kept, 4096u);
-}
-
-TEST(AreaStore, IsFilledByManyThreadsAtOnce) {
-  Pool pool(std::size_t{64} << 20);
-  Arena first(pool);
-  AreaStore store;
-  store.start(2048, first);
-  {
-    std::vector<std::jthread> threads;
-    for (int t = 0; t < 4; ++t) {
-      threads.emplace_back([&] {
-        Arena arena(pool);
-        for (std::uint32_t i = 0; i < 2048; ++i)
-          if (!store.find(i)) store.keep(i, area_of(i), arena);
-      });
-    }
-  }
-  for (std::uint32_t i = 0; i < 2048; ++i) {
-    ASSERT_NE(store.find(i), nullptr) << i;
-    EXPECT_EQ(store.find(i)->x0, i);
-  }
+TEST_F(AreaCacheTest, EveryAreaIsOfItsOwnPrimitiveAndFace) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<std::uint32_t> primitive(0, 20'000), face(0, 40);
+  for (int i = 0; i < 100'000; ++i) ask(face(random), primitive(random));
+  EXPECT_GT(projections_, 90'000);
 }
 
 }  // namespace
