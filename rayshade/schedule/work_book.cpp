@@ -58,6 +58,9 @@ double WorkBook::speed(const Worker& worker) const {
   return std::clamp((worker.expected + prior) / (worker.took + prior), .01, 100.0);
 }
 
+/// Seconds by the clock for a second of processor time.
+double WorkBook::stretch() const { return worked_ > 0 ? std::clamp(elapsed_ / worked_, 1.0, 100.0) : 1; }
+
 void WorkBook::weigh(Worker& worker, double weight) {
   speed_ += weight - worker.weight;
   worker.weight = weight;
@@ -79,8 +82,11 @@ void WorkBook::lost(int number) {
 
 void WorkBook::lease(std::int64_t number, int worker_number, double now) {
   Worker& it = worker(worker_number);
-  if (it.held.empty()) schedule_->rest(worker_number, false);
-  double expected = forecast_->seconds(number) / (speed(it) * it.threads);
+  if (it.held.empty()) {
+    schedule_->rest(worker_number, false);
+    it.since = now;
+  }
+  double expected = stretch() * forecast_->seconds(number) / (speed(it) * it.threads);
   if (!forecast_->knows()) expected = options_.lease_seconds / options_.lease_factor;
   it.busy_until = std::max(now, it.busy_until) + expected;
   const std::uint64_t serial = ++serial_;
@@ -179,7 +185,7 @@ std::vector<Block> WorkBook::take(int worker_number, int threads, double now) {
                                          speed(it), present_ + awaited, options_.granularity});
   // Others will have done all the rest before this one comes to it: work is not put by for it.
   const bool late = it.held.size() >= static_cast<std::size_t>(it.threads) && left_->seconds() > 0 &&
-                    it.busy_until - now > left_->seconds() / all;
+                    it.busy_until - now > stretch() * left_->seconds() / all;
   if (late) return blocks;
   double seconds = 0;
   while (static_cast<int>(blocks.size()) < size.blocks) {
@@ -229,9 +235,19 @@ void WorkBook::learn(std::int64_t number, int worker_number, double seconds) {
   schedule_->learned(number);
 }
 
+void WorkBook::watch(Worker& it, std::size_t held, double seconds, double now) {
+  if (!std::isfinite(seconds) || seconds <= 0) return;
+  const auto threads = static_cast<double>(std::min(held, static_cast<std::size_t>(it.threads)));
+  elapsed_ = elapsed_ * kMemory + threads * (now - it.since);
+  worked_ = worked_ * kMemory + seconds;
+  it.since = now;
+}
+
 bool WorkBook::finished(std::int64_t number, int worker_number, double seconds, double now) {
   expire(now);
-  drop(number, worker_number);
+  Worker& it = worker(worker_number);
+  const std::size_t held = it.held.size();
+  if (drop(number, worker_number)) watch(it, held, seconds, now);
   State& state = states_[static_cast<std::size_t>(number)];
   if (state == State::kDone) {
     ++repeated_;

@@ -5,7 +5,9 @@
 // its workers. A block that is given is leased. A result counts whoever brings it, once; others of the same
 // block are counted and ignored. Blocks of a worker that is lost are given first. A lease of which nothing is
 // heard for many times as long as expected ends, and the block goes to another. When nothing else is left,
-// workers without work get copies of blocks that are overdue elsewhere, the oldest leases first.
+// workers without work get copies of blocks that are overdue elsewhere, the oldest leases first. What is
+// expected is processor time; how much longer it takes by the clock, on processors that others use too, is
+// learnt from the blocks that come back: where all are late none is overdue.
 //
 // Pure: the time is a number that callers give, in seconds, and never goes back. So the master of a cluster,
 // the simulator and the tests use the same book. As long as somebody asks for work, the job ends.
@@ -97,13 +99,15 @@ class WorkBook {
     bool present = false, lost = false;
     int threads = 1;
     double expected = 0, took = 0;  ///< seconds of finished blocks, by forecast and in truth; old ones fade
-    double busy_until = 0;
-    double weight = 0;  ///< its part of speed_
+    double busy_until = 0;          ///< by the clock
+    double since = 0;               ///< when it began with the block that will be its next result
+    double weight = 0;              ///< its part of speed_
     std::vector<Held> held;
   };
 
   Worker& worker(int number);
   double speed(const Worker& worker) const;
+  double stretch() const;
   void weigh(Worker& worker, double weight);
   std::int64_t next_block(int worker);
   void lease(std::int64_t number, int worker, double now);
@@ -112,6 +116,7 @@ class WorkBook {
   void expire(double now);
   void give_copies(int worker, std::vector<Block>& blocks, double now);
   void learn(std::int64_t number, int worker, double seconds);
+  void watch(Worker& worker, std::size_t held, double seconds, double now);
 
   WorkBookOptions options_;
   std::string name_;
@@ -126,6 +131,8 @@ class WorkBook {
   std::deque<std::int64_t> returned_;  ///< to be given before all others, if they are still State::kReturned
   std::unordered_map<int, Worker> workers_;
   double speed_ = 0;  ///< threads times speed of all that are present
+  double elapsed_ = 0,
+         worked_ = 0;  ///< seconds of threads by the clock, and of their processors; old ones fade
   int present_ = 0, lost_ = 0;
   std::uint64_t serial_ = 0;
   std::int64_t missing_ = 0, leased_ = 0, repeated_ = 0, copies_ = 0, expired_ = 0;

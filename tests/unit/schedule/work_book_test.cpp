@@ -199,6 +199,26 @@ TEST(WorkBookTest, OverdueBlocksGoToIdleWorkersOldestFirst) {
   EXPECT_TRUE(book.complete());
 }
 
+// Eight workers on one processor: a second of work takes eight by the clock.
+TEST(WorkBookTest, WhereAllAreLateNoneIsOverdue) {
+  WorkBookOptions it = options("blocks", 2);
+  it.granularity = 1;
+  WorkBook book(40, 8, it);
+  double now = 0;
+  for (int i = 0; i < 3; ++i) {
+    const auto done = numbers(book.take(0, 1, now));
+    ASSERT_EQ(done.size(), 1U);
+    now += 8;
+    ASSERT_TRUE(book.finished(done[0], 0, 1, now));
+  }
+  const auto a = numbers(book.take(0, 1, now)), b = numbers(book.take(1, 1, now));
+  ASSERT_EQ(b.size(), 1U);
+  ASSERT_TRUE(book.finished(b[0], 1, 1, now + 7));
+  EXPECT_TRUE(book.take(1, 1, now + 11).empty());  // eight seconds, and half as many more
+  EXPECT_EQ(book.copies(), 0);
+  EXPECT_EQ(numbers(book.take(1, 1, now + 13)), a);
+}
+
 TEST(WorkBookTest, LeasesEndAndLateResultsAreWelcome) {
   WorkBookOptions it = options("blocks", 2);
   it.most_copies = 1;
