@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <vector>
 
+#include "fas/dispatch.h"
 #include "rayshade/sampling/grid.h"
 
 namespace rayshade {
@@ -175,6 +177,38 @@ TEST(CameraTest, SizeOfTheModelDoesNotMatter) {
     const Vec3 expected = Camera(resolve_settings(scene, {})).ray(17, 400).direction;
     EXPECT_NEAR(length(direction - expected), 0, 1e-14) << size;
   }
+}
+
+// Whatever instruction set aims, and also where squares under- or overflow.
+TEST(CameraTest, ManyPointsAreAimedAtAsOneByOne) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> place(-50, 2000);
+  std::vector<std::int64_t> targets = {0};  // the best
+  for (std::int64_t bit = 1; bit > 0 && bit <= fas::supported_targets(); bit <<= 1)
+    if ((fas::supported_targets() & bit) != 0) targets.push_back(bit);
+  ASSERT_GE(targets.size(), 2U);
+  for (const std::int64_t target : targets) {
+    fas::pretend_targets(target);
+    for (const double size : {1e-150, 1e-9, 1.0, 1e9, 1e148}) {
+      RenderSettings settings = screen(640, 480);
+      settings.eye = size * Vec3{1, -8, 2.5};
+      settings.look = size * Vec3{.25, 0, -.125};
+      const Camera camera(settings);
+      for (std::size_t count = 1; count <= ScreenPoints::kMost; ++count) {
+        ScreenPoints points;
+        points.count = count;
+        for (std::size_t i = 0; i < count; ++i) points.u[i] = place(random), points.v[i] = place(random);
+        camera.aim(points);
+        for (std::size_t i = 0; i < count; ++i) {
+          const Vec3 one = camera.ray(points.u[i], points.v[i]).direction, many = points.direction(i);
+          ASSERT_NEAR(length(one), 1, 1e-15);
+          ASSERT_TRUE(one.x == many.x && one.y == many.y && one.z == many.z)
+              << "target " << target << ", size " << size << ", " << i << " of " << count;
+        }
+      }
+    }
+  }
+  fas::pretend_targets(0);
 }
 
 TEST(CameraTest, TimesFillTheShutterInterval) {
