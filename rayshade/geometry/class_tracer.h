@@ -24,7 +24,6 @@ struct Batch {
   fas::LeafGroups groups[kMasks];
   std::vector<std::uint32_t> outside[kMasks];     ///< rays that bounded leaves cannot stop
   std::vector<std::vector<std::uint32_t>> which;  ///< queries by class
-  std::vector<std::uint32_t> all;                 ///< 0, 1, 2 ...: the queries of a span of one class
   std::vector<std::uint8_t> u, v;
   std::vector<double> depth;  ///< rays from the apex: depth per t; rays toward it: where they start
   std::vector<HierarchyCounts> in_hierarchy;  ///< by class

@@ -159,34 +159,25 @@ class FasIntersector final : public Intersector {
     Batch& batch = *static_cast<Batch*>(scratch.batch.get());
     batch.which.resize(std::max(batch.which.size(), classes_.size()));
     batch.in_hierarchy.resize(batch.which.size());
-    if (batch.all.empty()) {
-      batch.all.resize(kMostAtOnce);
-      std::iota(batch.all.begin(), batch.all.end(), 0u);
-    }
     for (std::size_t first = 0; first < queries.size(); first += kMostAtOnce) {
       const std::size_t count = std::min(kMostAtOnce, queries.size() - first);
       const auto some = queries.subspan(first, count);
       const auto into = answers.subspan(first, count);
-      const auto ask_class = [&](std::size_t c, std::span<const std::uint32_t> which) {
+      for (std::size_t i = 0; i < count;) {
+        std::size_t end = i + 1;
+        while (end < count && of_one_class(some[i], some[end])) ++end;
+        std::vector<std::uint32_t>& which = batch.which[class_of(some[i])];
+        const std::size_t known = which.size();
+        which.resize(known + (end - i));
+        std::iota(which.begin() + static_cast<std::ptrdiff_t>(known), which.end(),
+                  static_cast<std::uint32_t>(i));
+        i = end;
+      }
+      for (std::size_t c = 0; c < classes_.size(); ++c) {
+        if (batch.which[c].empty()) continue;
         batch.counts = &batch.in_hierarchy[c];
-        classes_[c].ask(some, into, which, *scratch.trees, batch, scratch);
-      };
-      if (std::all_of(some.begin(), some.end(),
-                      [&](const Query& query) { return of_one_class(query, some[0]); })) {
-        ask_class(class_of(some[0]), std::span(batch.all).first(count));
-      } else {
-        for (std::size_t i = 0; i < count;) {
-          std::size_t end = i + 1;
-          while (end < count && of_one_class(some[i], some[end])) ++end;
-          std::vector<std::uint32_t>& which = batch.which[class_of(some[i])];
-          which.insert(which.end(), batch.all.begin() + i, batch.all.begin() + end);
-          i = end;
-        }
-        for (std::size_t c = 0; c < classes_.size(); ++c) {
-          if (batch.which[c].empty()) continue;
-          ask_class(c, batch.which[c]);
-          batch.which[c].clear();
-        }
+        classes_[c].ask(some, into, batch.which[c], *scratch.trees, batch, scratch);
+        batch.which[c].clear();
       }
       ask_rest(scene_, some, into, batch, scratch);
     }

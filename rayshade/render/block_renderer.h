@@ -111,7 +111,7 @@ class BlockRenderer {
   RayTree tree_;
   SamplingCounts counts_;
   ReusedList<EyeSample> samples_;   ///< to be traced
-  std::vector<NearestQuery> rays_;  ///< theirs; all but the rays themselves stays as it is
+  std::vector<NearestQuery> rays_;  ///< theirs; what all eye rays have alike stays as it is
   Traced single_;                   ///< the one sample of every pixel of a block and its halo
   Traced traced_;                   ///< all others
 };

@@ -10,6 +10,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
+
 #include "fas/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -15,6 +15,8 @@ namespace {
 constexpr int kMostLooks = 16;
 /// Part of a worker's record that is kept with each new block: machines have other users, who come and go.
 constexpr double kMemory = .95;
+/// By the clock, for a second of processor time: beyond this a worker was not slow but stopped.
+constexpr double kMostStretch = 32;
 
 }  // namespace
 
@@ -59,7 +61,9 @@ double WorkBook::speed(const Worker& worker) const {
 }
 
 /// Seconds by the clock for a second of processor time.
-double WorkBook::stretch() const { return worked_ > 0 ? std::clamp(elapsed_ / worked_, 1.0, 100.0) : 1; }
+double WorkBook::stretch() const {
+  return worked_ > 0 ? std::clamp(elapsed_ / worked_, 1.0, kMostStretch) : 1;
+}
 
 void WorkBook::weigh(Worker& worker, double weight) {
   speed_ += weight - worker.weight;
@@ -238,7 +242,7 @@ void WorkBook::learn(std::int64_t number, int worker_number, double seconds) {
 void WorkBook::watch(Worker& it, std::size_t held, double seconds, double now) {
   if (!std::isfinite(seconds) || seconds <= 0) return;
   const auto threads = static_cast<double>(std::min(held, static_cast<std::size_t>(it.threads)));
-  elapsed_ = elapsed_ * kMemory + threads * (now - it.since);
+  elapsed_ = elapsed_ * kMemory + std::min(threads * (now - it.since), kMostStretch * seconds);
   worked_ = worked_ * kMemory + seconds;
   it.since = now;
 }
