@@ -21,7 +21,8 @@ namespace fas {
 /// are timed, and groups one after the other cost alike on average. The tree is left alone, for three times
 /// as many rays as have come by then, when the rays still to come would cost more through it than through the
 /// hierarchy. What has been made by then is paid for either way; what will be made is expected to grow with
-/// the square root of the rays.
+/// the square root of the rays, as told from all but the first of those that have come: where a tile of the
+/// picture begins, hundreds of nodes are made for a few thousand rays, and then none for many.
 class Choice {
  public:
   enum class Way : std::uint8_t { kTree, kHierarchy };
@@ -61,6 +62,9 @@ class Choice {
       tree_mode_.store(true, std::memory_order_relaxed);
     }
     if (!enough) return {Way::kTree, false};
+    // Where hardly anything has been made yet, the making is most of what a ray takes, whichever clock is
+    // read.
+    if (all_tree_rays_.load(std::memory_order_relaxed) < kTrial) return {Way::kTree, false};
     const std::uint64_t compared = compared_.load(std::memory_order_relaxed);
     const std::uint32_t every = compared < kTrial ? 2 : compared < 4 * kTrial ? 8 : 32;
     const std::uint32_t turn = turn_.fetch_add(1, std::memory_order_relaxed) % every;
@@ -74,24 +78,23 @@ class Choice {
       add(timed_rays_, rays);
       add(tree_ns_, static_cast<std::uint64_t>(std::max(*ns - static_cast<double>(making), 0.0)));
     }
-    add(all_tree_rays_, rays);
-    // What was expected to be made at first tells nothing of what will be made.
-    const double beyond = static_cast<double>(add(all_building_, making)) - making_;
-    add(building_, beyond > 0 ? std::min(making, static_cast<std::uint64_t>(beyond)) : 0);
-    const std::uint64_t n = add(tree_rays_, rays);
-    if (n < kWindow) return;
-    building_per_ray_.store(
-        static_cast<double>(building_.load(std::memory_order_relaxed)) / static_cast<double>(n),
-        std::memory_order_relaxed);
-    tree_rays_.store(0, std::memory_order_relaxed);
-    building_.store(0, std::memory_order_relaxed);
+    const std::uint64_t made = add(all_building_, making), n = add(all_tree_rays_, rays);
+    std::uint64_t next = next_mark_.load(std::memory_order_relaxed);
+    if (n < next || !next_mark_.compare_exchange_strong(next, 2 * n, std::memory_order_relaxed)) return;
+    first_.set(latest_.rays(), latest_.building());
+    latest_.set(n, made);
   }
   /// After a group that was timed went through the hierarchy, in so many nanoseconds, with so many exact
   /// tests.
   void through_hierarchy(std::size_t rays, double ns, std::uint64_t tests) {
     add(plain_tests_, tests);
-    add(plain_rays_, rays);
     add(plain_ns_, static_cast<std::uint64_t>(ns));
+    std::uint64_t known = add(plain_rays_, rays);
+    // Other parts of the picture are not like this one.
+    if (known > kRecent && plain_rays_.compare_exchange_strong(known, known / 2, std::memory_order_relaxed)) {
+      halve(plain_tests_);
+      halve(plain_ns_);
+    }
     if (!tree_mode_.load(std::memory_order_relaxed)) return;
     const std::uint64_t compared = add(compared_, rays);
     add(hierarchy_ns_, static_cast<std::uint64_t>(ns));
@@ -102,24 +105,26 @@ class Choice {
   static std::uint64_t add(std::atomic<std::uint64_t>& sum, std::uint64_t n) {
     return sum.fetch_add(n, std::memory_order_relaxed) + n;
   }
+  static void halve(std::atomic<std::uint64_t>& sum) {
+    sum.fetch_sub(sum.load(std::memory_order_relaxed) / 2, std::memory_order_relaxed);
+  }
   static double share(const std::atomic<std::uint64_t>& a, const std::atomic<std::uint64_t>& b) {
     return static_cast<double>(a.load(std::memory_order_relaxed)) /
            static_cast<double>(std::max<std::uint64_t>(b.load(std::memory_order_relaxed), 1));
   }
   void judge(std::uint64_t compared) {
-    const auto through_tree = static_cast<double>(all_tree_rays_.load(std::memory_order_relaxed));
-    // In the beginning every group comes to new places, and what they take to be made tells too much.
-    const bool early = through_tree < kEarly * expected_;
-    const double making = early ? 0 : making_per_ray();
-    if (making < 0) return;
-    // Few comparisons are of few places, and of caches that are still cold.
-    const double doubt = compared < 4 * kTrial ? 1.15 : 1.02;
-    const double ratio = share(tree_ns_, timed_rays_) / std::max(share(hierarchy_ns_, compared_), 1e-3);
-    if (ratio + making / plain_per_ray() > doubt) leave();
+    const double tree = share(tree_ns_, timed_rays_), plain = std::max(share(hierarchy_ns_, compared_), 1e-3);
+    // Where rays meet little, they say little of others: of these the tree may spare the more.
+    const double lost = (tree - plain) * static_cast<double>(all_tree_rays_.load(std::memory_order_relaxed));
+    if (plain < plain_per_ray() / 2 && lost < kRisk * expected_ * plain_per_ray()) return;
+    // Few comparisons are of few places, and of caches that are still cold. In the end a tree must be worth
+    // its memory.
+    const double doubt = compared < 4 * kTrial ? 1.15 : compared < 16 * kTrial ? 1.02 : .97;
+    if (tree / plain + making_per_ray() / plain_per_ray() > doubt) leave();
   }
   /// Whether enough rays have gone through the hierarchy to tell what the others will be like.
   bool known() const { return plain_rays_.load(std::memory_order_relaxed) > kKnown; }
-  /// Nanoseconds of a ray through the hierarchy.
+  /// Nanoseconds of a ray through the hierarchy, of late.
   double plain_per_ray() const {
     return plain_rays_.load(std::memory_order_relaxed) > 0 ? std::max(share(plain_ns_, plain_rays_), 1.0)
                                                            : kTypical;
@@ -140,30 +145,57 @@ class Choice {
     const double saved = hope();
     return saved > 0 && to_come() * saved >= making_;
   }
-  /// Nanoseconds a ray that making nodes will take, on average over the rays still to come; negative:
-  /// unknown. With a cost of all nodes of c sqrt(n) at n rays, the latest ray takes c / (2 sqrt(n)).
+  /// Nanoseconds a ray that making nodes will take, on average over the rays still to come; 0 as long as
+  /// nothing is known. With c sqrt(n) for all nodes of n rays, c is told by what has been made since about
+  /// the second last time that the rays had doubled: of the first ones every group comes to new places.
   double making_per_ray() const {
-    const double latest = building_per_ray_.load(std::memory_order_relaxed);
-    const auto rays =
-        static_cast<double>(std::max<std::uint64_t>(all_tree_rays_.load(std::memory_order_relaxed), 1));
-    return latest * 2 / (1 + std::sqrt((rays + to_come()) / rays));
+    const auto n = static_cast<double>(all_tree_rays_.load(std::memory_order_relaxed));
+    const auto before = static_cast<double>(first_.rays());
+    if (before <= 0 || n <= before || n < kEarly * expected_) return 0;
+    // What was expected to be made at first tells nothing of what will be made.
+    const auto until = [&](std::uint64_t made) { return std::max(static_cast<double>(made), making_); };
+    const double c = (until(all_building_.load(std::memory_order_relaxed)) - until(first_.building())) /
+                     (std::sqrt(n) - std::sqrt(before));
+    return c / (std::sqrt(n) + std::sqrt(n + to_come()));
   }
   void leave() {
     const std::uint64_t seen = seen_.load(std::memory_order_relaxed);
     again_.store(seen + std::max<std::uint64_t>(kPause, 3 * seen), std::memory_order_relaxed);
-    for (std::atomic<std::uint64_t>* sum : {&compared_, &timed_rays_, &tree_ns_, &hierarchy_ns_, &tree_rays_,
-                                            &building_, &all_building_, &all_tree_rays_})
+    for (std::atomic<std::uint64_t>* sum :
+         {&compared_, &timed_rays_, &tree_ns_, &hierarchy_ns_, &all_building_, &all_tree_rays_})
       sum->store(0, std::memory_order_relaxed);
-    building_per_ray_.store(-1, std::memory_order_relaxed);
+    next_mark_.store(kFirstMark, std::memory_order_relaxed);
+    first_.set(0, 0);
+    latest_.set(0, 0);
     tree_mode_.store(false, std::memory_order_relaxed);
   }
 
+  /// How many rays had gone through the tree at some time, and what nodes had taken to be made by then.
+  class Mark {
+   public:
+    std::uint64_t rays() const { return rays_.load(std::memory_order_relaxed); }
+    std::uint64_t building() const { return building_.load(std::memory_order_relaxed); }
+    void set(std::uint64_t rays, std::uint64_t building) {
+      rays_.store(rays, std::memory_order_relaxed);
+      building_.store(building, std::memory_order_relaxed);
+    }
+
+   private:
+    std::atomic<std::uint64_t> rays_{0}, building_{0};
+  };
+
   /// See known(): the first few rays are of one place.
   static constexpr std::uint64_t kKnown = 1 << 14;
-  /// Rays through the hierarchy, beside a tree, before the first judgement.
+  /// Rays through the hierarchy of which, and of half as many before, an average is taken.
+  static constexpr std::uint64_t kRecent = 1 << 16;
+  /// Rays through a tree before it is timed, and then beside it through the hierarchy before the first
+  /// judgement.
   static constexpr std::uint64_t kTrial = 2048;
-  /// Rays through the tree over which the cost of building is averaged.
-  static constexpr std::uint64_t kWindow = 4096;
+  /// Rays through the tree when what nodes have taken to be made is first noted.
+  static constexpr std::uint64_t kFirstMark = 4096;
+  /// Share of what all expected rays would take through the hierarchy that may be lost on rays that are not
+  /// like most.
+  static constexpr double kRisk = 1.0 / 64;
   /// Share of the expected rays before which what it takes to make nodes is not judged.
   static constexpr double kEarly = 1.0 / 32;
   /// The shortest time, in rays, that a tree is left alone.
@@ -173,11 +205,13 @@ class Choice {
   double expected_, making_;
   Saving saving_;
   std::atomic<bool> tree_mode_{false};
-  std::atomic<double> building_per_ray_{-1};  ///< of the latest window
   std::atomic<std::uint32_t> turn_{0};
-  std::atomic<std::uint64_t> compared_{0}, timed_rays_{0}, tree_ns_{0}, hierarchy_ns_{0}, tree_rays_{0},
-      building_{0}, all_building_{0}, all_tree_rays_{0};
-  std::atomic<std::uint64_t> plain_rays_{0}, plain_ns_{0}, plain_tests_{0}, seen_{0}, again_{0};
+  Mark first_, latest_;  ///< two times at which the rays had about doubled since the one before
+  std::atomic<std::uint64_t> next_mark_{kFirstMark};
+  std::atomic<std::uint64_t> compared_{0}, timed_rays_{0}, tree_ns_{0}, hierarchy_ns_{0}, all_building_{0},
+      all_tree_rays_{0};
+  std::atomic<std::uint64_t> plain_rays_{0}, plain_ns_{0}, plain_tests_{0};  ///< those of late
+  std::atomic<std::uint64_t> seen_{0}, again_{0};
 };
 
 /// Nanoseconds of processor time that this thread has taken: what others do meanwhile does not count.

@@ -145,7 +145,8 @@ class HyperTree {
   class Square;
 
   float split_at(const Leaf& leaf) const {
-    return static_cast<float>(kPatience * tuner_.per_candidate() * (8 + leaf.count));
+    const double full = static_cast<double>(pool_.used()) / kAmple;
+    return static_cast<float>(kPatience * (1 + full * full) * tuner_.per_candidate() * (8 + leaf.count));
   }
   bool make_root(int face, ThreadState& state, TreeCounts& counts);
   Place descend(Root& root, int face, std::uint32_t u, std::uint32_t v, ThreadState& state, TreeCache& cache,
@@ -163,6 +164,9 @@ class HyperTree {
   /// A leaf is split when its wasted work exceeds this many times the cost of a split. Splitting too early is
   /// the costly error (memory), too late costs little.
   static constexpr double kPatience = 3;
+  /// Bytes of all trees from which on splits must be worth more and more: what caches do not hold costs time
+  /// of its own, which no split is charged with.
+  static constexpr double kAmple = 8 << 20;
   /// Nanoseconds of an exact test: of a sphere or triangle; those of other shapes cost more, and are then
   /// split late, which costs little.
   static constexpr double kTestCost = 10;

@@ -41,7 +41,7 @@ void Master::begin(const EnginePlan& plan) {
   renderer_ = &plan.renderer;
   run_options_ = &plan.options;
   threads_ = rendering_options(plan.options, options_.ranks_here).threads;
-  dedicated_ = plan.options.cluster.dedicated_master && !alone();
+  dedicated_ = plan.options.cluster.master_only_serves(transport_.size());
   report_.width = plan.settings.window_width();
   report_.height = plan.settings.window_height();
   if (plan.options.cluster.costs) {
@@ -226,7 +226,7 @@ bool Master::render_frame(Renderer& renderer, const FrameJob& job) {
   options.schedule = cluster.schedule;
   options.starts = cluster.start;
   options.granularity = cluster.granularity;
-  options.workers = transport_.size() - (dedicated_ ? 1 : 0);
+  options.workers = cluster.renderers(transport_.size());
   options.block_side = run_options_->block;
   book_ = std::make_unique<WorkBook>(static_cast<int>(picture.width()), static_cast<int>(picture.height()),
                                      options);

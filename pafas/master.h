@@ -39,6 +39,9 @@ class Master final : public rayshade::Engine {
   rayshade::Program kind() const override { return rayshade::Program::kPafas; }
   rayshade::Provider& provider() override { return files_; }
   int machine_share() const override { return options_.ranks_here; }
+  void adjust(const rayshade::Options& options, rayshade::RenderOptions& out) const override {
+    out.renderers = options.cluster.renderers(transport_.size());
+  }
   void begin(const rayshade::EnginePlan& plan) override;
   bool render_frame(rayshade::Renderer& renderer, const rayshade::FrameJob& job) override;
   void end(rayshade::RenderStatistics& statistics) override;

@@ -224,6 +224,7 @@ void Worker::prepare() {
       throw std::runtime_error("the scene is not the same here as on rank 0");
     scene->settings = resolve_settings(scene->scene.settings, scene->options.settings);
     RenderOptions options = rendering_options(scene->options, options_.ranks_here);
+    options.renderers = scene->options.cluster.renderers(transport_.size());
     options.report_difference = [rank = transport_.rank()](const std::string& text) {
       fmt::print(stderr, "pafas: rank {}: error: {}", rank, text);
     };

@@ -18,6 +18,11 @@ struct ClusterOptions {
   std::optional<std::string> costs;   ///< file of block costs to simulate with, or to begin with
   std::vector<std::string> assume;    ///< KEY=VALUE for the simulator
   std::optional<std::string> tile_map, timeline;
+
+  /// Whether rank 0 of so many renders nothing; one rank alone does.
+  bool master_only_serves(int ranks) const { return dedicated_master && ranks > 1; }
+  /// How many of so many ranks render.
+  int renderers(int ranks) const { return master_only_serves(ranks) ? ranks - 1 : ranks; }
 };
 
 }  // namespace rayshade

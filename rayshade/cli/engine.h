@@ -33,7 +33,7 @@ class Engine {
   /// Processes of this job on this machine: threads and memory are divided by it (rule 19).
   virtual int machine_share() const { return 1; }
   /// A last word on how this process renders.
-  virtual void adjust(RenderOptions&) const {}
+  virtual void adjust(const Options&, RenderOptions&) const {}
   /// Before the first frame. Throws RenderError.
   virtual void begin(const EnginePlan&) {}
   /// As Renderer::render_frame. Throws RenderError.

@@ -146,7 +146,7 @@ class Run {
     out.report_difference = [this](const std::string& text) {
       fmt::print(stderr, "{}: error: {}", engine_.program(), text);
     };
-    engine_.adjust(out);
+    engine_.adjust(options_, out);
     return out;
   }
 

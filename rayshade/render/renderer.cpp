@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "rayshade/render/explain.h"
@@ -100,7 +101,7 @@ FasOptions Renderer::fas_options() const {
   options.split = options_.fas_split;
   options.choose = options_.fas_choose;
   options.rays = static_cast<double>(settings_.window_width()) * settings_.window_height() *
-                 settings_.samples * settings_.samples;
+                 settings_.samples * settings_.samples / std::max(options_.renderers, 1);
   return options;
 }
 

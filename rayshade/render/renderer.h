@@ -30,6 +30,7 @@ struct RenderOptions {
   std::size_t fas_memory = 0;  ///< bytes for the hyper-trees; 0: a quarter of what the process may use
   fas::Split fas_split = fas::Split::kAdaptive;
   bool fas_choose = true;  ///< FasOptions::choose
+  int renderers = 1;       ///< processes that share the pictures, about evenly: each expects as few rays
   /// Puts an intersector of one's own around (or in place of) the one made: to record or to check its
   /// answers.
   std::function<std::unique_ptr<Intersector>(const CompiledScene&, std::unique_ptr<Intersector>)> wrap;

@@ -24,7 +24,7 @@ class LyingEngine : public LocalEngine {
  public:
   LyingEngine(std::uint64_t every_nearest, std::uint64_t every_occlusion)
       : every_nearest_(every_nearest), every_occlusion_(every_occlusion) {}
-  void adjust(RenderOptions& options) const override {
+  void adjust(const Options&, RenderOptions& options) const override {
     options.wrap = [this](const CompiledScene&, std::unique_ptr<Intersector> inner) {
       return std::make_unique<LyingIntersector>(std::move(inner), every_nearest_, every_occlusion_);
     };

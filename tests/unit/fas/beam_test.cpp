@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "fas/beam_tree.h"
-#include "fas/choice.h"
 #include "tests/unit/fas/random_geometry.h"
 
 namespace fas {
@@ -203,64 +202,6 @@ TEST(BeamTree, IsGrownByManyThreadsAtOnce) {
     for (std::uint64_t t = 0; t < 4; ++t) threads.emplace_back(work, t % 2);
   }
   EXPECT_EQ(wrong, 0);
-}
-
-TEST(Choice, LeavesATreeThatIsSlowerAloneAndComesBack) {
-  using Way = Choice::Way;
-  constexpr Choice::Saving kPacks{0.25, 2}, kAlone{0.3, 0};
-  /// The share of groups that go through the tree, where a ray takes so long either way.
-  const auto run = [](Choice& choice, double tree, double hierarchy, int groups, std::uint64_t making = 0) {
-    int through_tree = 0;
-    for (int i = 0; i < groups; ++i) {
-      const Choice::Turn turn = choice.next(64);
-      if (turn.way == Way::kTree) {
-        const double ns = 64 * tree + static_cast<double>(making);
-        choice.through_tree(64, making, turn.timed ? std::optional(ns) : std::nullopt);
-        ++through_tree;
-      } else if (turn.timed) {
-        choice.through_hierarchy(64, 64 * hierarchy, 64 * 4);
-      }
-    }
-    return static_cast<double>(through_tree) / groups;
-  };
-  Choice choice(1e6, 1e6, kPacks);
-  EXPECT_GT(run(choice, 50, 100, 20'000), 0.9);
-  EXPECT_LT(run(choice, 400, 100, 20'000), 0.5);
-  // It is given another try, more and more seldom.
-  EXPECT_GT(run(choice, 400, 100, 200'000), 0);
-  EXPECT_LT(run(choice, 400, 100, 200'000), 0.05);
-  EXPECT_GT(run(choice, 50, 100, 2'000'000), 0.4);
-  // Where primitives are as many as rays, making a tree cannot pay, unless rays are costly; and not any more
-  // where most rays have come.
-  Choice crowded(1e6, 1e9, kPacks);
-  EXPECT_EQ(crowded.next(64).way, Way::kHierarchy);
-  crowded.through_hierarchy(20'000, 20'000 * 100, 20'000 * 4);
-  EXPECT_EQ(crowded.next(64).way, Way::kHierarchy);
-  Choice costly(1e6, 1e9, kPacks);
-  costly.through_hierarchy(64, 64 * 60'000, 64 * 4);
-  EXPECT_EQ(costly.next(64).way, Way::kHierarchy);  // too few to tell
-  costly.through_hierarchy(20'000, 20'000 * 60'000.0, 20'000 * 4);
-  EXPECT_EQ(costly.next(64).way, Way::kTree);
-  Choice early(1e6, 5e6, kPacks), late(1e6, 5e6, kPacks);
-  for (Choice* each : {&early, &late}) each->through_hierarchy(20'000, 20'000 * 100, 20'000 * 4);
-  EXPECT_EQ(early.next(64).way, Way::kTree);
-  EXPECT_EQ(late.next(900'000).way, Way::kHierarchy);
-  // Nor where rays make hardly a test too many.
-  Choice frugal(1e6, 0, kPacks);
-  frugal.through_hierarchy(20'000, 20'000 * 100, 20'000);
-  EXPECT_EQ(frugal.next(64).way, Way::kHierarchy);
-  // Where tests are not looked at, a tree is tried at once, by single rays too.
-  Choice alone(1e6, 1e6, kAlone), hopeless(1e6, 1e9, kAlone);
-  EXPECT_EQ(alone.next(1).way, Way::kTree);
-  EXPECT_EQ(hopeless.next(1).way, Way::kHierarchy);
-  // What has been made is paid for: near the end a tree is kept for what its rays cost from now on.
-  Choice sunk(1e5, 1.5e5, kPacks);
-  sunk.through_hierarchy(20'000, 20'000 * 100, 20'000 * 4);
-  EXPECT_GT(run(sunk, 60, 100, 40, 64 * 75), 0.4);
-  EXPECT_GT(run(sunk, 60, 100, 1500), 0.8);
-  // Building that never ends counts, too.
-  Choice slow(1e4, 0, kPacks);
-  EXPECT_LT(run(slow, 50, 100, 2000, 64 * 1000), 0.6);
 }
 
 }  // namespace
