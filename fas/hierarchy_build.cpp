@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "fas/hierarchy.h"
+#include "fas/page_allocator.h"
 
 namespace fas {
 namespace {
@@ -65,7 +66,6 @@ class Builder {
     const auto work = [&] {
       for (std::size_t i = next++; i < tasks_.size(); i = next++) {
         make_node(tasks_[i].range, tasks_[i].depth, parts_[i], false);
-        parts_[i].shrink_to_fit();
       }
     };
     std::vector<std::thread> others;
@@ -77,10 +77,11 @@ class Builder {
 
   /// The nodes in one piece. Items are no longer needed.
   std::vector<Node> take_nodes() {
-    std::vector<Node> nodes = std::move(top_);
-    std::size_t total = nodes.size();
-    for (const std::vector<Node>& part : parts_) total += part.size();
+    std::size_t total = top_.size();
+    for (const Part& part : parts_) total += part.size();
+    std::vector<Node> nodes;
     nodes.reserve(total);
+    nodes.assign(top_.begin(), top_.end());
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
       const auto offset = static_cast<std::uint32_t>(nodes.size());
       nodes[tasks_[i].node].child[tasks_[i].lane] = offset;
@@ -89,7 +90,7 @@ class Builder {
           if ((child & Hierarchy::kLeafBit) == 0) child += offset;
       }
       nodes.insert(nodes.end(), parts_[i].begin(), parts_[i].end());
-      std::vector<Node>().swap(parts_[i]);
+      Part().swap(parts_[i]);
     }
     return nodes;
   }
@@ -113,7 +114,10 @@ class Builder {
     return r;
   }
 
-  std::uint32_t make_node(const Range& whole, int depth, std::vector<Node>& out, bool defer) {
+  /// Parts and the whole they end in would otherwise count twice.
+  using Part = std::vector<Node, PageAllocator<Node>>;
+
+  std::uint32_t make_node(const Range& whole, int depth, Part& out, bool defer) {
     const auto index = static_cast<std::uint32_t>(out.size());
     out.emplace_back();
     Range parts[Hierarchy::kWidth] = {whole};
@@ -241,8 +245,8 @@ class Builder {
   std::vector<Item>& items_;
   std::uint32_t grain_ = 0;
   std::vector<Task> tasks_;
-  std::vector<Node> top_;
-  std::vector<std::vector<Node>> parts_;  ///< of the tasks
+  Part top_;
+  std::vector<Part> parts_;  ///< of the tasks
 };
 
 }  // namespace

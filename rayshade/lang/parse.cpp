@@ -17,6 +17,9 @@ namespace rayshade {
 namespace lang {
 namespace {
 
+/// NULs with which the scanner wants a text to end.
+constexpr std::size_t kEndOfText = 2;
+
 /// Reads and preprocesses the scene into `text`. False, with messages, where there is nothing to parse.
 bool load(Provider& provider, const std::string& name, Context& context, std::string* text) {
   const std::string shown = name == "-" ? "stdin" : name;
@@ -32,6 +35,7 @@ bool load(Provider& provider, const std::string& name, Context& context, std::st
   const bool wanted = options.preprocessing == Preprocessing::kAlways ||
                       (options.preprocessing == Preprocessing::kAuto && has_directive(*bytes));
   if (!wanted) {
+    text->reserve(bytes->size() + kEndOfText);  // see parse_text(): it is as long as the scene
     *text = *bytes;
     return true;
   }
@@ -47,10 +51,10 @@ void parse_text(std::string& text, Context& context) {
     context.messages.error_in_file(context.scene.file_names.front(), "the scene is longer than 2 GiB");
     return;
   }
-  text.append(2, '\0');
+  text.append(kEndOfText, '\0');
   // Without preprocessing the text is the source itself.
   if (context.sources.text(0).empty())
-    context.sources.set_text(0, std::string_view(text).substr(0, text.size() - 2));
+    context.sources.set_text(0, std::string_view(text).substr(0, text.size() - kEndOfText));
   Scanner scanner(text, context.sources, context.messages);
   SceneBuilder builder(context);
   run_parser(scanner, builder);
