@@ -2,7 +2,6 @@
 #include "pafas/worker.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -314,9 +313,7 @@ void Worker::report() {
     report_.statistics = scene_->renderer->statistics();
   }
   report_.cpu_seconds = report_.statistics.cpu_seconds;
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  report_.peak_memory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+  report_.peak_memory = peak_memory_here();
   tell(Report{report_});
 }
 

@@ -43,8 +43,8 @@ std::vector<OptionSpec> cluster_option_table() {
        "start",
        {"PLACE"},
        kCluster,
-       "Where the starting blocks of the blocks schedule lie: on a circle a third as wide as the picture, on "
-       "one half as wide, or on two circles (the default).",
+       "Where the starting blocks of the blocks schedule lie: on a circle a third as wide as the picture "
+       "(third), on one half as wide (half), or on two circles (two-circles, the default).",
        [starts](Options& o, Values v) { o.cluster.start = chosen("--start", v[0], starts); },
        starts},
       {0,

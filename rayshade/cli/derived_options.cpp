@@ -15,6 +15,7 @@ ParseOptions parsing_options(const Options& options) {
     out.preprocessor_arguments = split_arguments(*options.preprocessor_arguments);
   out.flip_normals = options.settings.flip_normals;
   out.verbose = options.verbose;
+  out.output_named = options.output.has_value() && options.action == Action::kRender;
   return out;
 }
 
@@ -31,6 +32,7 @@ RenderOptions rendering_options(const Options& options, int share) {
   out.layers = options.layers.has_value();
   out.cost = options.cost_map.has_value();
   out.sample_map = options.sample_map;
+  out.unused_files = options.action == Action::kCheck;
   return out;
 }
 

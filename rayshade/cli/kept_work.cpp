@@ -113,7 +113,7 @@ void KeptWork::tend(int frame, const FrameBuffer& picture) {
   }
   if (!options_.partial || partial_failed_ || now < partial_due_ || picture.present() == 0) return;
   try {
-    partial_written_ = !output_.write_partial(picture, frame).empty() || partial_written_;
+    output_.write_partial(picture, frame);
   } catch (const WriteError& error) {
     // The rendering itself may yet succeed.
     partial_failed_ = true;
@@ -135,7 +135,7 @@ void KeptWork::save() {
 }
 
 void KeptWork::finish_frame(int frame) {
-  if (resumed_ || partial_written_) output_.remove_partial(frame);
+  output_.remove_partial(frame);  // whichever run has left it
   if (!journal_) return;
   complain_once();
   // Frames one after the other in one file get their file at the very end: until then all are kept.

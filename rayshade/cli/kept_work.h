@@ -54,7 +54,7 @@ class KeptWork {
   PictureOutput& output_;
   Say say_, note_;
   std::unique_ptr<Journal> journal_;
-  bool failure_told_ = false, partial_failed_ = false, resumed_ = false, partial_written_ = false;
+  bool failure_told_ = false, partial_failed_ = false, resumed_ = false;
   Clock::time_point synced_ = Clock::now(), scene_due_ = synced_, partial_due_ = synced_;
   std::int64_t blocks_ = 0, pixels_ = 0;
   int frames_ = 0;

@@ -78,10 +78,7 @@ std::vector<OptionSpec> make_table() {
                "Set the size of the screen in pixels.",
                [](Options& o, Values v) {
                  const int x = parse_int(v[0], "-R", -1, kMax), y = parse_int(v[1], "-R", -1, kMax);
-                 if (x == -1 && y == -1)
-                   o.settings.screen.reset();
-                 else
-                   o.settings.screen = {x, y};
+                 o.settings.screen = {x, y};
                }});
   t.push_back({'W',
                "window",
@@ -154,7 +151,12 @@ std::vector<OptionSpec> make_table() {
        kSampling,
        "With --sampling sobol: the estimated standard error, in units of the picture's full range, at "
        "which a pixel of nine samples gets no more; 0.01 without it, 0 for all samples everywhere.",
-       [](Options& o, Values v) { o.settings.tolerance = parse_real(v[0], "--tolerance"); }});
+       [](Options& o, Values v) {
+         const double tolerance = parse_real(v[0], "--tolerance");
+         if (!(tolerance >= 0 && tolerance <= 1))
+           throw UsageError("--tolerance: '" + v[0] + "' is not a number from 0 to 1");
+         o.settings.tolerance = tolerance;
+       }});
   t.push_back({'j',
                "toggle-jitter",
                {},
@@ -166,23 +168,22 @@ std::vector<OptionSpec> make_table() {
                {"R", "G", "B"},
                kSampling,
                "Set the contrast above which a pixel gets all its samples.",
-               [](Options& o, Values v) {
-                 o.settings.contrast = color(v, "-T");
-                 if (o.settings.contrast->r == -1) o.settings.contrast.reset();
+               [](Options& o, Values v) { o.settings.contrast = color(v, "-T"); }});
+  t.push_back({'g',
+               "toggle-gauss",
+               {},
+               kSampling,
+               "Toggle the Gaussian pixel filter, which is otherwise off, whatever the scene says.",
+               [](Options& o, Values) {
+                 o.settings.filter =
+                     o.settings.filter == FilterKind::kGauss ? FilterKind::kBox : FilterKind::kGauss;
                }});
-  t.push_back(
-      {'g', "toggle-gauss", {}, kSampling, "Toggle the Gaussian pixel filter.", [](Options& o, Values) {
-         o.settings.filter = o.settings.filter == FilterKind::kGauss ? FilterKind::kBox : FilterKind::kGauss;
-       }});
   t.push_back({'C',
                "cutoff",
                {"R", "G", "B"},
                kSampling,
                "Set the contribution below which secondary rays are not traced.",
-               [](Options& o, Values v) {
-                 o.settings.cutoff = color(v, "-C");
-                 if (o.settings.cutoff->r == -1) o.settings.cutoff.reset();
-               }});
+               [](Options& o, Values v) { o.settings.cutoff = color(v, "-C"); }});
   t.push_back({'D',
                "max-depth",
                {"N"},
@@ -299,7 +300,8 @@ std::vector<OptionSpec> make_table() {
                {"FILE"},
                kPicture,
                "Also write depth, normal, object and samples of each pixel: as layers of FILE if it is an "
-               "EXR file, else as FILE with the name of the layer before its suffix.",
+               "EXR file (then the picture must be EXR or PFM), else as FILE with the name of the layer "
+               "before its suffix.",
                [](Options& o, Values v) { o.layers = v[0]; },
                {"FILE"}});
 
@@ -428,14 +430,13 @@ std::vector<OptionSpec> make_table() {
                  o.report_file = v[0];
                },
                {"FILE"}});
-  t.push_back({'F',
-               "report-frequency",
-               {"N"},
-               kReport,
-               "Print a plain progress line every N rows.",
-               [](Options& o, Values v) {
-                 o.report_frequency = std::max(1, std::abs(parse_int(v[0], "-F", -kMax, kMax)));
-               }});
+  t.push_back(
+      {'F',
+       "report-frequency",
+       {"N"},
+       kReport,
+       "Print a plain progress line every N rows.",
+       [](Options& o, Values v) { o.report_frequency = std::max(1, parse_int(v[0], "-F", -kMax, kMax)); }});
   t.push_back({0,
                "stats",
                {"FILE"},

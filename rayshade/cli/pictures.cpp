@@ -92,6 +92,15 @@ std::string PictureOutput::file_name(const std::string& pattern, int frame) cons
   return is_numbered(pattern) ? numbered_name(pattern, frame) : pattern;
 }
 
+void PictureOutput::check_writable() const {
+  if (name_ == "-") return;
+  const std::string first = file_name(name_, settings_.first_frame);
+  struct stat info {};
+  // Who reads from a pipe would take the end of a trial for that of the picture.
+  if (stat(first.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) return;
+  const OutputFile trial(first);
+}
+
 void PictureOutput::write_frame(const FrameBuffer& picture, int frame) {
   if (appended_) {
     if (!appending_) appending_ = std::make_unique<OutputFile>(name_);

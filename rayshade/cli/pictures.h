@@ -27,6 +27,8 @@ class PictureOutput {
   /// A tag for every picture: what determines it.
   void set_provenance(std::vector<std::pair<std::string, std::string>> tags) { tags_ = std::move(tags); }
 
+  /// Before hours are spent on it: throws WriteError where the (first) picture cannot be written.
+  void check_writable() const;
   /// Writes a finished frame (and its layers and cost map).
   void write_frame(const FrameBuffer& picture, int frame);
   /// Writes what is there of a frame beside the real name; nothing where frames go to standard output.

@@ -65,12 +65,21 @@ void write_text(const std::string& name, const std::string& text) {
   file.commit();
 }
 
+std::string size_text(std::uint64_t bytes) {
+  const auto size = static_cast<double>(bytes);
+  return size < 1e6   ? fmt::format("{:.1f} kB", size / 1e3)
+         : size < 1e9 ? fmt::format("{:.1f} MB", size / 1e6)
+                      : fmt::format("{:.1f} GB", size / 1e9);
+}
+
 /// One run of the program, step by step; each step may end it.
 class Run {
  public:
   Run(Options options, Engine& engine) : options_(std::move(options)), engine_(engine) {}
 
   int go() {
+    if (options_.settings.tolerance && options_.settings.sampling != SamplingKind::kSobol)
+      throw UsageError("--tolerance needs --sampling sobol");
     open_report();
     if (!read_scene()) return kFailed;
     if (options_.action == Action::kDumpScene) {
@@ -84,7 +93,7 @@ class Run {
     Renderer renderer(scene_, settings_, engine_.provider(), render_options());
     if (options_.action == Action::kExplain) return explain(renderer);
     if (!options_.quiet) {
-      fmt::print(stderr, "{}: {} primitive{}, {} error{}, {} warning{}\n", scene_name(),
+      fmt::print(stderr, "{}: {} primitive{}, {} error{}, {} warning{}\n", shown_name(),
                  renderer.compiled().counts.primitives, renderer.compiled().counts.primitives == 1 ? "" : "s",
                  0, "s", warnings_, warnings_ == 1 ? "" : "s");
     }
@@ -97,6 +106,7 @@ class Run {
 
  private:
   std::string scene_name() const { return options_.scene(); }
+  std::string shown_name() const { return scene_name() == "-" ? "stdin" : scene_name(); }
   bool chatty() const { return report_.get() != stderr || !options_.quiet; }
 
   void open_report() {
@@ -115,7 +125,7 @@ class Run {
     options_.quiet = options_.quiet || s.quiet;
     options_.verbose = options_.verbose || s.verbose;
     if (!options_.report_frequency) options_.report_frequency = s.report_frequency;
-    if (!options_.report_file && s.report_file) {
+    if (!options_.report_file && s.report_file && options_.action == Action::kRender) {
       std::FILE* file = std::fopen(s.report_file->c_str(), "w");
       if (!file) {
         throw RenderError(
@@ -131,6 +141,8 @@ class Run {
     const bool color = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
     const bool quiet = options_.quiet || result.scene.settings.quiet;
     for (const std::string& line : result.prints) fmt::print(stderr, "{}", line);
+    if (report_.get() != stderr || !quiet)
+      for (const std::string& line : result.notes) fmt::print(report_.get(), "{}", line);
     for (const Diagnostic& d : result.diagnostics) {
       if (d.severity == Severity::kAdvice && quiet) continue;
       warnings_ += d.severity == Severity::kWarning || d.severity == Severity::kAdvice;
@@ -156,8 +168,8 @@ class Run {
                                    options_.explain_x, options_.explain_y, settings_.width,
                                    settings_.height));
     }
-    write_text(options_.output.value_or("-"),
-               renderer.explain(settings_.first_frame, options_.explain_x, options_.explain_y));
+    // Not to the file of -O: there the picture is that is to be explained.
+    write_text("-", renderer.explain(settings_.first_frame, options_.explain_x, options_.explain_y));
     return verified(renderer.statistics(), kComplete);
   }
 
@@ -166,17 +178,16 @@ class Run {
     const std::uint64_t limit = options_.memory_limit.value_or(available_memory());
     const std::uint64_t per_pixel = pixel_size(picture.storage) + 4 * picture.layers.size();
     const std::uint64_t need = estimate_picture_bytes(settings_, per_pixel) + (std::uint64_t{32} << 20);
-    if (options_.verbose) {
+    if (options_.verbose && chatty()) {
       fmt::print(report_.get(), "Memory for the picture: {:.1f} MB of {:.1f} MB available\n",
                  static_cast<double>(need) / 1e6, static_cast<double>(limit) / 1e6);
     }
     if (need > limit) {
-      throw RenderError(fmt::format("a picture of {} x {} pixels needs {:.1f} GB of memory, and {:.1f} GB "
-                                    "are available: render it in parts "
-                                    "with -W, or raise --memory",
-                                    settings_.window_width(), settings_.window_height(),
-                                    static_cast<double>(need) / 1e9, static_cast<double>(limit) / 1e9),
-                        scene_.settings.screen_location);
+      throw RenderError(
+          fmt::format("a picture of {} x {} pixels needs {} of memory, and {} are available: "
+                      "render it in parts with -W, or raise --memory",
+                      settings_.window_width(), settings_.window_height(), size_text(need), size_text(limit)),
+          scene_.settings.screen_location);
     }
     return limit;
   }
@@ -195,7 +206,7 @@ class Run {
     Renderer renderer(scene_, settings_, files, render_options());
     if (options_.fas_dump && !renderer.eye_tree()) throw UsageError("--fas-dump: " + why_no_eye_tree());
     run_.program = engine_.program();
-    run_.scene = scene_name();
+    run_.scene = shown_name();
     run_.version = RAYSHADE_VERSION;
     run_.scene_hash = scene_hash(scene_);
     output.set_provenance({{"Software", "rayshade " RAYSHADE_VERSION},
@@ -203,11 +214,12 @@ class Run {
                            {"Seed", fmt::format("{}", settings_.seed)},
                            {"Samples", fmt::format("{} x {}{}", settings_.samples, settings_.samples,
                                                    settings_.jitter ? " jittered" : "")}});
-    if (options_.verbose) {
+    if (options_.verbose && chatty()) {
       fmt::print(report_.get(), "rayshade {}\n{}", RAYSHADE_VERSION, settings_text(settings_, renderer));
       std::fflush(report_.get());
     }
 
+    output.check_writable();
     FrameBuffer picture(buffer);
     const PictureFormat format = format_of(picture);
     const auto say = [this](const std::string& text) { complain(engine_, text); };
@@ -306,7 +318,7 @@ class Run {
     TreeDrawing drawing;
     drawing.width = settings_.window_width();
     drawing.height = settings_.window_height();
-    drawing.title = fmt::format("Tree of eye rays of {}, frame {}", scene_name(), frame);
+    drawing.title = fmt::format("Tree of eye rays of {}, frame {}", shown_name(), frame);
     for (const ClassReport& c : renderer.statistics().intersector.classes) {
       if (c.rays != ClassReport::Rays::kEye || c.queries() == 0) continue;
       drawing.note =

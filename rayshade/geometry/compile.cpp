@@ -53,6 +53,7 @@ class Compiler {
         pools_(scene, facts_, provider, options.flip_normals, out),
         placements_(scene, facts_, out),
         paths_(scene, facts_, out),
+        unused_files_(options.unused_files),
         most_copies_(options.most_copies),
         small_(scene.named_objects.size(), Small::kUnknown) {}
 
@@ -117,6 +118,7 @@ class Compiler {
   ShapePools pools_;
   PlacementTable placements_;
   PathTable paths_;
+  bool unused_files_;
   std::uint64_t most_copies_, copies_left_ = kCopiesOfAll;
   std::vector<Small> small_;  ///< named objects that are to be copied
   std::vector<GroupFacts> group_facts_;
@@ -132,6 +134,7 @@ void Compiler::run() {
       static_cast<std::size_t>(std::min<std::uint64_t>(facts_.world_primitives(), scene_.nodes.size())));
   flatten(world, scene_.world, {}, 0);
   store_group(0, std::move(world));
+  if (unused_files_) pools_.check_files();
   out_.counts.primitives = facts_.world_primitives();
   out_.counts.leaves = out_.leaves.size();
   out_.counts.unused_objects = facts_.unused_objects();

@@ -132,6 +132,8 @@ struct CompileOptions {
   /// is found among primitives, not among instances. Sharing saves memory, which is not worth it for so few.
   std::uint64_t most_copies = 4096;
   int threads = 1;  ///< at most so many build hierarchies; the result does not depend on it
+  bool unused_files =
+      false;  ///< looks also at files of objects that are not used, only to see if they are good
 };
 
 /// Counts for the statistics.

@@ -81,6 +81,10 @@ std::uint32_t ShapePools::build(const Node& node) {
   }
 }
 
+void ShapePools::check_files() {
+  for (const shape::HeightField& field : scene_.height_fields) read_height_field(field.file);
+}
+
 std::shared_ptr<const HeightFieldData> ShapePools::read_height_field(const FileReference& file) {
   std::shared_ptr<const HeightFieldData>& data = files_[file.name];
   if (data) return data;

@@ -20,6 +20,8 @@ class ShapePools {
              CompiledScene& out);
   /// The index of the primitive in its pool. Throws CompileError where a height field cannot be read.
   std::uint32_t index_of(const Node& node);
+  /// Reads every height field that the scene names. Throws CompileError.
+  void check_files();
 
  private:
   std::uint32_t build(const Node& node);

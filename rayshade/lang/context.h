@@ -21,7 +21,8 @@ struct Context {
   SourceMap& sources;
   Messages& messages;
   const ParseOptions& options;
-  std::vector<std::string>& prints;  ///< output of `print` and of verbose `name`
+  std::vector<std::string>& prints;  ///< output of `print`
+  std::vector<std::string>& notes;   ///< output of verbose `name`
 };
 
 /// A map from names that can be asked with views of the text.

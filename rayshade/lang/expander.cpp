@@ -43,11 +43,17 @@ std::size_t skip_blanks_and_comments(std::string_view text, std::size_t at) {
       const std::size_t end = text.find("*/", at + 2);
       if (end == std::string_view::npos) return text.size();
       at = end + 2;
+    } else if (text.substr(at, 2) == "//") {
+      at = line_comment_end(text, at);
     } else {
       break;
     }
   }
   return at;
+}
+
+std::size_t line_comment_end(std::string_view text, std::size_t at) {
+  return std::min(text.find('\n', at), text.size());
 }
 
 Macro* Expander::find(std::string_view name) {
@@ -203,6 +209,7 @@ bool Expander::find_arguments(Frames& frames, std::size_t* frame, std::size_t* a
 
 std::vector<std::string> Expander::read_arguments(Frames& frames, const Macro& macro, std::string_view name) {
   std::vector<std::string> arguments(1);
+  bool quoted = false;  // there // is none, as in the names of files
   for (int depth = 0;;) {
     Frame& frame = frames.back();
     const std::string_view text = frames.size() == 1 ? frame.text : std::string_view(frame.owned);
@@ -212,7 +219,7 @@ std::vector<std::string> Expander::read_arguments(Frames& frames, const Macro& m
       pop(frames);
       continue;
     }
-    const std::size_t blanks = skip_blanks_and_comments(text, frame.at);
+    const std::size_t blanks = quoted ? frame.at : skip_blanks_and_comments(text, frame.at);
     if (blanks != frame.at) {
       frame.at = blanks;
       arguments.back() += ' ';
@@ -220,6 +227,7 @@ std::vector<std::string> Expander::read_arguments(Frames& frames, const Macro& m
     }
     const char c = text[frame.at++];
     spend(1);
+    if (c == '"') quoted = !quoted;
     if (c == ')' && depth-- == 0) break;
     if (c == '(') ++depth;
     const bool rest = macro.variadic && arguments.size() == macro.parameters.size();

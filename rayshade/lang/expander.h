@@ -79,7 +79,10 @@ class Expander {
 /// Marks the identifier that follows as one that must not be expanded any more. Never part of a text.
 inline constexpr char kPainted = '\x01';
 
-/// Skips blanks, line ends and comments.
+/// Skips blanks, line ends and comments of both kinds.
 std::size_t skip_blanks_and_comments(std::string_view text, std::size_t at);
+/// The end of the line of a comment that starts with //: preprocessed scenes have these too, but not between
+/// quotes.
+std::size_t line_comment_end(std::string_view text, std::size_t at);
 
 }  // namespace rayshade::lang

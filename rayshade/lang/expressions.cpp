@@ -13,7 +13,7 @@ namespace rayshade::lang {
 namespace {
 
 /// Whether truncation gives an int (and the remainder of two such ints is defined).
-bool fits_int(double number) { return std::fabs(number) < 2147483648.0; }
+bool fits_int(double number) { return number > -2147483649.0 && number < 2147483648.0; }
 
 }  // namespace
 
@@ -205,6 +205,7 @@ void Expressions::define(Name name, const Span& span, Value value) {
 }
 
 void Expressions::print(Value value, const Span& span) {
+  if (context_.messages.errors() > 0) return;  // the value may stand in for one that was wrong
   // Unlike a value that is used, a printed one may be infinite or undefined.
   if (!value.varying) {
     context_.prints.push_back(fmt::format("{:f}\n", value.constant));

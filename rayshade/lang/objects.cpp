@@ -190,8 +190,8 @@ void Objects::name(Name name, const Span&, NodeId node) {
                           Named{static_cast<std::uint32_t>(scene.named_objects.size() - 1), levels_});
   if (!context_.options.verbose && !scene.settings.verbose) return;
   const std::uint64_t count = scene.primitive_count(node);
-  context_.prints.push_back(fmt::format("{} \"{}\":\n\t{} primitive{}\n", keyword_of(scene.nodes[node].kind),
-                                        name.view(), count, count == 1 ? " " : "s"));
+  context_.notes.push_back(fmt::format("{} \"{}\":\n\t{} primitive{}\n", keyword_of(scene.nodes[node].kind),
+                                       name.view(), count, count == 1 ? " " : "s"));
 }
 
 void Objects::apply_surface() { scopes_.back().surface = surfaces_.index(); }

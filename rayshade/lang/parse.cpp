@@ -67,7 +67,7 @@ ParseResult parse_scene(Provider& provider, const std::string& name, const Parse
   ParseResult result;
   lang::SourceMap sources(result.scene.file_names);
   lang::Messages messages(sources, options.max_errors);
-  lang::Context context{result.scene, sources, messages, options, result.prints};
+  lang::Context context{result.scene, sources, messages, options, result.prints, result.notes};
   std::string text;
   if (lang::load(provider, name, context, &text)) lang::parse_text(text, context);
   result.diagnostics = messages.take();

@@ -26,12 +26,14 @@ struct ParseOptions {
   bool flip_normals = false;  ///< -f: the normals of smooth triangles are not compared with their face
   int max_errors = 20;        ///< reading stops after that many
   bool verbose = false;       ///< tell about `name` statements (as does `report verbose`)
+  bool output_named = false;  ///< -O: every `outfile` is ignored
 };
 
 struct ParseResult {
   Scene scene;                          ///< usable only if `ok`
   std::vector<Diagnostic> diagnostics;  ///< in the order of the text
-  std::vector<std::string> prints;      ///< what `print` and verbose `name` statements write, in order
+  std::vector<std::string> prints;      ///< what `print` statements write, in order
+  std::vector<std::string> notes;       ///< what verbose `name` statements write, in order
   bool ok = false;                      ///< no diagnostic is an error
 };
 

@@ -27,7 +27,7 @@ struct Stops {
     for (int c = 0; c < 256; ++c) {
       const char letter = static_cast<char>(c);
       is[c] = is_identifier_start(letter) || (c >= '0' && c <= '9') || c == '.' || c == '/' || c == '\n' ||
-              c == '\\' || letter == kPainted;
+              c == '\\' || c == '"' || letter == kPainted;
     }
   }
 };
@@ -109,6 +109,7 @@ void Preprocessor::copy(File& file, std::size_t end) {
 void Preprocessor::text_line(File& file) {
   const std::string_view text = file.text;
   std::size_t at = file.at;
+  bool quoted = false;
   while (at < text.size() && !messages_.stopped()) {
     const char c = text[at];
     if (!kStops.is[static_cast<unsigned char>(c)]) {
@@ -130,10 +131,16 @@ void Preprocessor::text_line(File& file) {
       }
     } else if (const std::size_t number = number_length(text.substr(at))) {
       at += number;
+    } else if (c == '"') {
+      quoted = !quoted;
+      ++at;
     } else if (c == '/' && text.substr(at, 2) == "/*") {
       copy(file, at);
       comment(file);
       at = file.at;
+    } else if (c == '/' && !quoted && text.substr(at, 2) == "//") {
+      copy(file, at);
+      file.at = at = line_comment_end(text, at);
     } else if (const std::size_t splice = splice_length(text, at)) {
       copy(file, at);
       file.at = at += splice;
@@ -193,12 +200,17 @@ void Preprocessor::skip_line(File& file) {
   const std::string_view text = file.text;
   for (;;) {
     const std::size_t end = std::min(text.find('\n', file.at), text.size());
-    const std::size_t open = text.substr(file.at, end - file.at).find("/*");
-    if (open == std::string_view::npos) {
+    std::size_t begin = file.at;
+    for (bool quoted = false; begin < end; ++begin) {
+      if (text[begin] == '"') quoted = !quoted;
+      if (text[begin] != '/') continue;
+      if (text.substr(begin, 2) == "/*") break;
+      if (!quoted && text.substr(begin, 2) == "//") begin = end;
+    }
+    if (begin >= end) {
       file.at = std::min(end + 1, text.size());
       return;
     }
-    const std::size_t begin = file.at + open;
     const std::size_t close = text.find("*/", begin + 2);
     if (close == std::string_view::npos) {
       messages_.error(Place{file.source, begin, begin + 2}, "this comment is never closed");
@@ -216,6 +228,7 @@ std::string Preprocessor::logical_line(File& file) {
   const std::string_view text = file.text;
   std::string line;
   std::size_t at = file.at + 1;
+  bool quoted = false;
   while (at < text.size() && text[at] != '\n') {
     if (const std::size_t splice = splice_length(text, at)) {
       at += splice;
@@ -229,7 +242,10 @@ std::string Preprocessor::logical_line(File& file) {
       }
       line += ' ';
       at = close + 2;
+    } else if (!quoted && text.substr(at, 2) == "//") {
+      at = line_comment_end(text, at);
     } else {
+      if (text[at] == '"') quoted = !quoted;
       if (text[at] != kPainted) line += text[at];
       ++at;
     }

@@ -85,11 +85,14 @@ void Settings::cutoff(const Color& limit) { out_.cutoff = unless_unset(limit); }
 void Settings::max_depth(int depth) { out_.max_depth = std::max(depth, 0); }
 
 void Settings::outfile(Name name, const Span& span) {
-  if (out_.output) {
+  if (name.view().empty()) return context_.messages.error(span, "'outfile' needs the name of a file");
+  if (context_.options.output_named)
+    context_.messages.warning(span,
+                              fmt::format("outfile '{}' is ignored: -O names the picture", name.view()));
+  else if (out_.output)
     context_.messages.warning(
         span, fmt::format("outfile '{}' is ignored: the first one, '{}', holds", name.view(), *out_.output));
-    return;
-  }
+  if (out_.output) return;
   out_.output = name.view();
 }
 

@@ -24,7 +24,7 @@ void Transforms::scale(Value x, Value y, Value z, const Span& span) {
   for (int i = 0; i < 3; ++i) {
     if (!a[i].constant()) continue;
     const double factor = a[i].evaluate(Moment{});
-    if (!degenerate(std::fabs(factor)) && std::isfinite(1 / factor)) continue;
+    if (is_scale_factor(factor)) continue;
     context_.messages.error(span, fmt::format("degenerate scale: factor {} is {}", "xyz"[i], factor));
     return;
   }

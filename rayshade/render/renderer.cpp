@@ -36,7 +36,7 @@ auto located(const Work& work) {
   } catch (const TextureError& error) {
     throw RenderError(error.what(), error.location);
   } catch (const MotionError& error) {
-    throw RenderError(fmt::format("{} at time {}", error.what(), error.time), error.location);
+    throw RenderError(error.what(), error.location);
   }
 }
 
@@ -53,8 +53,9 @@ Renderer::Renderer(const Scene& scene, const RenderSettings& settings, Provider&
     compile.frame = settings.first_frame;
     compile.hierarchies = !brute_force();
     compile.threads = options.threads;
+    compile.unused_files = options.unused_files;
     compiled_ = compile_scene(scene, provider, compile);
-    textures_ = std::make_unique<CompiledTextures>(*compiled_, provider);
+    textures_ = std::make_unique<CompiledTextures>(*compiled_, provider, options.unused_files);
   });
   if (compiled_->counts.primitives == 0) throw RenderError("nothing to render: the scene has no objects", {});
   camera_ = std::make_unique<Camera>(settings_);

@@ -39,7 +39,8 @@ struct RenderOptions {
   std::function<void(const std::string&)> report_difference;  ///< VerifyOptions::report
   bool layers = false;
   bool cost = false;
-  bool sample_map = false;  ///< alpha tells which pixels are fully sampled
+  bool sample_map = false;    ///< alpha tells which pixels are fully sampled
+  bool unused_files = false;  ///< CompileOptions::unused_files
 };
 
 /// An error while preparing or rendering, with its place where there is one.

@@ -28,6 +28,13 @@ T choose(const std::optional<T>& option, const std::optional<T>& scene, const T&
   return option ? *option : scene.value_or(fallback);
 }
 
+/// Where -1 stands for the default (language.md 4), in an option too: then the scene's value does not count.
+Color choose_color(const std::optional<Color>& option, const std::optional<Color>& scene,
+                   const Color& fallback) {
+  const Color chosen = choose(option, scene, fallback);
+  return chosen.r == -1 ? fallback : chosen;
+}
+
 void require_finite(double value, const char* what) {
   if (!std::isfinite(value)) throw SettingsError(fmt::format("{} is not a finite number", what));
 }
@@ -53,8 +60,8 @@ void crop_axis(double low, double high, int& first, int& last) {
 void resolve_screen(const SceneSettings& scene, const SettingsOverrides& options, RenderSettings& out) {
   const auto screen = choose(options.screen, scene.screen, {out.width, out.height});
   const Location where = options.screen ? Location{} : scene.screen_location;
-  out.width = screen[0];
-  out.height = screen[1];
+  if (screen[0] != -1) out.width = screen[0];
+  if (screen[1] != -1) out.height = screen[1];
   if (out.width < 1 || out.height < 1) {
     throw SettingsError(fmt::format("the screen has no pixels ({} x {})", out.width, out.height), where);
   }
@@ -116,7 +123,8 @@ void resolve_camera(const SceneSettings& scene, const SettingsOverrides& options
     throw SettingsError("the view direction is parallel to the up vector");
 
   out.stereo = options.eye;
-  const auto separation = options.eye_separation ? options.eye_separation : scene.eye_separation;
+  auto separation = options.eye_separation ? options.eye_separation : scene.eye_separation;
+  if (separation == -1) separation.reset();
   out.eye_separation = separation.value_or(0);
   require_finite(out.eye_separation, "eye separation");
   if (out.stereo == Eye::kCenter) return;
@@ -143,8 +151,8 @@ void resolve_sampling(const SceneSettings& scene, const SettingsOverrides& optio
   out.filter = choose(options.filter, scene.filter, out.filter);
   out.filter_width = scene.filter_width.value_or(out.filter == FilterKind::kGauss ? kGaussWidth : 1.0);
   require_finite(out.filter_width, "filter width");
-  out.contrast = choose(options.contrast, scene.contrast, out.contrast);
-  out.cutoff = choose(options.cutoff, scene.cutoff, out.cutoff);
+  out.contrast = choose_color(options.contrast, scene.contrast, out.contrast);
+  out.cutoff = choose_color(options.cutoff, scene.cutoff, out.cutoff);
   out.max_depth = std::max(0, choose(options.max_depth, scene.max_depth, out.max_depth));
 }
 

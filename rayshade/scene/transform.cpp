@@ -27,8 +27,7 @@ std::size_t argument_count(StepKind kind) {
   return 0;
 }
 
-/// The map of one animated step. A scale is degenerate only at zero (its inverse must be finite); small ones
-/// are fine at any size of the model.
+/// The map of one animated step.
 Affine step_at(const AnimatedStep& step, const Moment& moment) {
   double v[12];
   const std::size_t count = argument_count(step.kind);
@@ -42,7 +41,7 @@ Affine step_at(const AnimatedStep& step, const Moment& moment) {
   switch (step.kind) {
     case StepKind::kScale:
       for (std::size_t i = 0; i < 3; ++i) {
-        if (!std::isfinite(1 / v[i])) {
+        if (!is_scale_factor(v[i])) {
           throw MotionError(
               fmt::format("degenerate scale {:g} {:g} {:g} at time {:g}", v[0], v[1], v[2], moment.time),
               step.location, moment.time);

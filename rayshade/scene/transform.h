@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +17,9 @@
 namespace rayshade {
 
 enum class StepKind : std::uint8_t { kScale, kTranslate, kRotate, kMatrix };
+
+/// Whether `scale` takes a factor: not where it is smaller than kEpsilon or not finite (objects.md 1.7).
+inline bool is_scale_factor(double factor) { return std::fabs(factor) >= kEpsilon && std::isfinite(factor); }
 
 /// One written transform with at least one time-varying argument. Arguments in written order: kScale and
 /// kTranslate use 3, kRotate 4 (axis, degrees), kMatrix 12 (rows, then translation).

@@ -97,6 +97,7 @@ struct RayTree::Walk {
   bool in_medium = false;
   double extinction = 1;
   int steps = 0;
+  double least = 0;          ///< light of which all channels are below this is none
   bool opaque = false;       ///< something certainly opaque is in the way
   bool through_all = false;  ///< asks for all leaves, not just transparent ones
 };

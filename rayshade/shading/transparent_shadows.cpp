@@ -32,6 +32,11 @@ void RayTree::follow_transparent(bool through_all) {
     walk.in_medium = false;
     walk.extinction = 1;
     walk.steps = 0;
+    // The threshold is meant for light that the factor of a spot has not yet dimmed (shading.md 4.1).
+    const ShadingLight& light = scene_.lights[lights_[walk.pending].light];
+    walk.least = kEpsilon;
+    if (light.kind == LightKind::kSpot)
+      walk.least *= spot_factor(light, -dot(light.axis, shadow_queries_[i].ray.direction));
     walk.opaque = lights_[shadow_owner_[i]].blocked;
     walk.through_all = through_all;
   }
@@ -88,7 +93,7 @@ void RayTree::follow_transparent(bool through_all) {
       pending.color *= through.color;
       walk.in_medium = through.entering;
       walk.extinction = through.extinction;
-      if (all_below(pending.color, kEpsilon)) {
+      if (all_below(pending.color, walk.least)) {
         pending.blocked = true;
         continue;
       }

@@ -110,7 +110,7 @@ void check_channels(const Image& image, const Texture& texture) {
 
 }  // namespace
 
-CompiledTextures::CompiledTextures(const CompiledScene& compiled, Provider& provider) {
+CompiledTextures::CompiledTextures(const CompiledScene& compiled, Provider& provider, bool unused) {
   const Scene& scene = *compiled.scene;
   FileIndex<ColorMap> tables;
   FileIndex<Image> images;
@@ -175,6 +175,9 @@ CompiledTextures::CompiledTextures(const CompiledScene& compiled, Provider& prov
       list.changes_transmission = list.changes_transmission || list.textures.back().changes_transmission;
     }
   }
+  for (std::size_t i = 0; unused && i < done.size(); ++i)
+    for (const Texture& source : scene.texture_lists[i])
+      if (!done[i]) compile(source);
   for (const bool transmission_only : {false, true}) {
     std::vector<PathNeeds>& needs = needs_[transmission_only];
     needs.reserve(compiled.path_nodes.size());

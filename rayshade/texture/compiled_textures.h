@@ -56,8 +56,9 @@ struct PathNeeds {
 class CompiledTextures {
  public:
   CompiledTextures() = default;
-  /// Throws TextureError. `scene` must outlive this.
-  CompiledTextures(const CompiledScene& scene, Provider& provider);
+  /// Throws TextureError. `scene` must outlive this. `unused`: compiles textures of objects that are not
+  /// used, too, only to see if they are good.
+  CompiledTextures(const CompiledScene& scene, Provider& provider, bool unused = false);
   CompiledTextures(CompiledTextures&&) = default;
   CompiledTextures& operator=(CompiledTextures&&) = default;
 

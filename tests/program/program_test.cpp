@@ -72,6 +72,54 @@ TEST_F(ProgramTest, TheReportGoesToStandardErrorOrAFile) {
   EXPECT_THAT(read_file(path("report.txt")), HasSubstr("Screen resolution: 20 x 16"));
 }
 
+TEST_F(ProgramTest, APictureThatCannotBeWrittenIsKnownBeforeItIsRendered) {
+  const Outcome lost = go("-O nowhere/a.png --stats a.json -v", kSmall);
+  EXPECT_EQ(lost.status, 1);
+  EXPECT_THAT(lost.err, HasSubstr("nowhere/a.png"));
+  EXPECT_THAT(lost.err, Not(HasSubstr("Eye rays")));
+  EXPECT_FALSE(fs::exists(path("a.json")));
+}
+
+TEST_F(ProgramTest, ExplainingAndCheckingLeaveFilesAlone) {
+  write_file(path("a.ray"), std::string("report verbose keep.txt\n") + kSmall);
+  write_file(path("a.png"), "a picture");
+  write_file(path("keep.txt"), "kept");
+  const Outcome explained = go("--explain 10 8 -O a.png a.ray");
+  EXPECT_EQ(explained.status, 0);
+  EXPECT_THAT(explained.out, HasSubstr("eye ray, depth 0"));
+  EXPECT_EQ(go("--check -O a.png a.ray").status, 0);
+  EXPECT_EQ(read_file(path("a.png")), "a picture");
+  EXPECT_EQ(read_file(path("keep.txt")), "kept");
+}
+
+TEST_F(ProgramTest, CheckingLooksAtFilesOfUnusedObjectsToo) {
+  for (const char* object : {"heightfield nofile", "sphere 1 0 0 0 texture image nofile",
+                             "sphere 1 0 0 0 texture marble nofile"}) {
+    write_file(path("a.ray"), std::string("name x ") + object + "\n" + kSmall);
+    const Outcome checked = go("--check a.ray");
+    EXPECT_EQ(checked.status, 1) << object;
+    EXPECT_THAT(checked.err, HasSubstr("a.ray:1:")) << object;
+    EXPECT_THAT(checked.err, HasSubstr("nofile")) << object;
+    EXPECT_EQ(go("-q -O a.png a.ray").status, 0) << object;  // what is not used is not built
+  }
+}
+
+TEST_F(ProgramTest, QuietMeansWarningsAndErrorsOnly) {
+  const std::string named = std::string("name x sphere 1 0 0 0\n") + kSmall;
+  EXPECT_EQ(go("-q -v -O a.png", named).err, "");
+  EXPECT_THAT(go("-v -O a.png", named).err, HasSubstr("sphere \"x\""));
+  EXPECT_EQ(go("-V report.txt -O a.png", named).err, "");
+  EXPECT_THAT(read_file(path("report.txt")), HasSubstr("sphere \"x\""));
+}
+
+TEST_F(ProgramTest, AnIgnoredOutfileIsTold) {
+  const Outcome one = go("-q -O a.png", std::string("outfile b.png\n") + kSmall);
+  EXPECT_THAT(one.err, HasSubstr("outfile 'b.png' is ignored: -O names the picture"));
+  EXPECT_FALSE(fs::exists(path("b.png")));
+  const Outcome two = go("-q", std::string("outfile b.png outfile c.png\n") + kSmall);
+  EXPECT_THAT(two.err, HasSubstr("outfile 'c.png' is ignored: the first one, 'b.png', holds"));
+}
+
 TEST_F(ProgramTest, ASceneErrorHasItsPlaceAndLeavesNoPicture) {
   write_file(path("bad.ray"), "sphere 1 0 0 0\nspere 2 0 0 0\n");
   const Outcome bad = go("-O a.png bad.ray");

@@ -238,10 +238,10 @@ TEST(NamedObjects, MustBeDefinedBefore) {
 TEST(NamedObjects, AreToldWhenVerbose) {
   const ParseResult result =
       parse_text("name a sphere 1 0 0 0 report verbose name b list object a object a end");
-  EXPECT_THAT(result.prints, testing::ElementsAre("list \"b\":\n\t2 primitives\n"));
+  EXPECT_THAT(result.notes, testing::ElementsAre("list \"b\":\n\t2 primitives\n"));
   ParseOptions verbose;
   verbose.verbose = true;
-  EXPECT_THAT(parse_text("name a sphere 1 0 0 0", verbose).prints,
+  EXPECT_THAT(parse_text("name a sphere 1 0 0 0", verbose).notes,
               testing::ElementsAre("sphere \"a\":\n\t1 primitive \n"));
 }
 

@@ -91,10 +91,20 @@ TEST(Macros, OfLineAndFile) {
 }
 
 TEST(Text, StaysAsItIs) {
-  EXPECT_EQ(preprocess("a // b\n\"c'd\nit's\n"), "a // b\n\"c'd\nit's");
+  EXPECT_EQ(preprocess("a / b\n\"c'd\nit's\n"), "a / b\n\"c'd\nit's");
   EXPECT_EQ(preprocess("a/*x*/b/* \n # if 0 \n */c"), "a b c");
   EXPECT_EQ(preprocess("ab\\\ncd e \\\r\nf"), "abcd e f");
   EXPECT_EQ(preprocess("  # define A 1\nA\n#\n# /* nothing */\nb"), "1\nb");
+}
+
+TEST(Text, CommentsReachToTheEndOfTheLine) {
+  EXPECT_EQ(preprocess("a // b /* \nc// d\n//\ne"), "a \nc\n\ne");
+  EXPECT_EQ(preprocess("#define A 1 // one\nA A// it's \"A\nA"), "1 1\n1");
+  EXPECT_EQ(preprocess("#define F(a, b) b a\nF(1, // one, )\n2)"), "2 1");
+  EXPECT_EQ(preprocess("#if 0\n// /*\n#else\nb\n#endif"), "b");
+  EXPECT_EQ(preprocess("image \"http://a//b\" c\n"), "image \"http://a//b\" c");
+  EXPECT_EQ(preprocess("#define A \"x//y\"\nA"), "\"x//y\"");
+  EXPECT_EQ(preprocess("#define F(a) a\nF(\"x//y\")"), "\"x//y\"");
 }
 
 TEST(Conditions, ChooseBranches) {

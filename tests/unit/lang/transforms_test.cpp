@@ -48,16 +48,17 @@ TEST(Transforms, ThatVaryStaySeparate) {
 
 TEST(Transforms, ThatFlattenSpaceAreErrors) {
   for (const char* text :
-       {"scale 0 1 1", "scale 1 1 0", "scale (time) 0 1", "scale 1e-320 1 1", "transform 1 0 0 0 1 0 0 0 0",
-        "transform 1 2 3 2 4 6 0 0 1", "scale 1e-200 1 1 scale 1e-200 1 1", "transform 0 0 0 0 0 0 0 0 0"}) {
+       {"scale 0 1 1", "scale 1 1 0", "scale 9e-6 1 1", "scale 1 -9e-6 1", "scale (time) 0 1",
+        "scale 1e-320 1 1", "transform 1 0 0 0 1 0 0 0 0", "transform 1 2 3 2 4 6 0 0 1",
+        "transform 1e-200 0 0 0 1 0 0 0 1 transform 1e-200 0 0 0 1 0 0 0 1", "transform 0 0 0 0 0 0 0 0 0"}) {
     const ParseResult result = parse_text(std::string("sphere 1 0 0 0\n ") + text);
     EXPECT_EQ(count(result, Severity::kError), 1) << text;
     EXPECT_EQ(result.diagnostics[0].location.line, 2u) << text;
   }
   EXPECT_THAT(all_messages(parse_text("sphere 1 0 0 0 scale 1 0 1")), HasSubstr("factor y is 0"));
   // Small is not flat.
-  for (const char* text :
-       {"scale 1e-9 1e-9 1e-9", "transform 1e-4 0 0 0 1e-4 0 0 0 1e-4", "scale 1e-30 1 1e30"}) {
+  for (const char* text : {"scale 1.1e-5 1.1e-5 1.1e-5", "scale 1e-5 1 1", "scale 1e-3 1 1 scale 1e-3 1 1",
+                           "transform 1e-9 0 0 0 1e-9 0 0 0 1e-9", "transform 1e-30 0 0 0 1 0 0 0 1e30"}) {
     EXPECT_TRUE(parse_text(std::string("sphere 1 0 0 0 ") + text).ok) << text;
   }
 }

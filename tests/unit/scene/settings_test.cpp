@@ -204,6 +204,26 @@ TEST(SettingsTest, WindowOptionWinsAndWindowsMustFit) {
   EXPECT_TRUE(mentions(bad({0, 3, 7, 6}), "window is empty"));
 }
 
+TEST(SettingsTest, MinusOneInAnOptionStandsForTheDefault) {
+  const RenderSettings defaults;
+  const RenderSettings set = resolved([](auto& scene, auto& options) {
+    scene.screen = {30, 20};
+    scene.contrast = scene.cutoff = Color{.5, .5, .5};
+    options.screen = {-1, 40};
+    options.contrast = options.cutoff = Color{-1, 0, 0};
+  });
+  EXPECT_EQ(set.width, defaults.width);
+  EXPECT_EQ(set.height, 40);
+  EXPECT_EQ(set.contrast, defaults.contrast);
+  EXPECT_EQ(set.cutoff, defaults.cutoff);
+  EXPECT_TRUE(mentions(failure([](auto& scene, auto& options) {
+                         scene.eye_separation = 1;
+                         options.eye_separation = -1;
+                         options.eye = Eye::kLeft;
+                       }),
+                       "eye separation"));
+}
+
 TEST(SettingsTest, ScreensHaveSensibleSizes) {
   const auto bad = [](int width, int height) {
     return failure([&](SceneSettings& scene, SettingsOverrides&) {
@@ -212,7 +232,7 @@ TEST(SettingsTest, ScreensHaveSensibleSizes) {
     });
   };
   EXPECT_TRUE(mentions(bad(0, 5), "no pixels"));
-  EXPECT_TRUE(mentions(bad(5, -1), "no pixels"));
+  EXPECT_TRUE(mentions(bad(5, -2), "no pixels"));
   EXPECT_TRUE(mentions(bad(1000001, 1), "too large"));
   EXPECT_EQ(bad(1, 1000001).line, 3u);
   const RenderSettings large = resolved([](auto& scene, auto&) { scene.screen = {1000000, 1000000}; });

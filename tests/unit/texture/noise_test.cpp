@@ -230,6 +230,12 @@ TEST(Noise, TakesAnyNumber) {
     EXPECT_LT(std::fabs(noise3({x, 0.5, 0.5})), 1.2) << x;
     EXPECT_TRUE(is_finite(dnoise3({0.5, x, 0.5}))) << x;
   }
+  // Cells repeat after 4096, at any size: where all numbers are multiples of a lesser power of two, too.
+  for (const double x : {1e15, 4.6e18, 5e18, 9e18, -5e18, 1.3e19, 1e25}) {
+    const double cell = std::fmod(x + 1000000, 4096) - 1000000;
+    EXPECT_EQ(noise3({x, 0.3, 0.4}), noise3({cell, 0.3, 0.4})) << x;
+    EXPECT_EQ(dnoise3({0.3, x, 0.4}), dnoise3({0.3, cell, 0.4})) << x;
+  }
   const double inf = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(std::isnan(noise3({0, inf, 0})));
   EXPECT_TRUE(std::isnan(noise3({0, 0, std::nan("")})));
