@@ -210,9 +210,11 @@ TEST_F(ProgramTest, StatisticsAreJson) {
 /// Enough objects for trees.
 std::string many_spheres(const std::string& settings) {
   std::string text = "screen 40 32 sample 1 nojitter\nlight 1 point 5 -9 9\n" + settings + "\n";
-  for (int i = 0; i < 60; ++i) {
-    text += "sphere diffuse .8 .6 .4 .4 " + std::to_string(i % 10 - 4.5) + " " + std::to_string(i % 3) + " " +
-            std::to_string(i / 10 - 2.5) + "\n";
+  for (int row = 0; row < 6; ++row) {
+    for (int i = 0; i < 10; ++i) {
+      text += "sphere diffuse .8 .6 .4 .4 " + std::to_string(i - 4.5) + " " +
+              std::to_string((10 * row + i) % 3) + " " + std::to_string(row - 2.5) + "\n";
+    }
   }
   return text;
 }

@@ -31,10 +31,10 @@ class XmlReader {
       }
       if (text_[0] == '<') {
         seen_root = true;
-        if (const std::string wrong = tag(); !wrong.empty()) return wrong;
+        if (std::string wrong = tag(); !wrong.empty()) return wrong;
       } else if (open_.empty()) {
         return "text before the root element";
-      } else if (const std::string wrong = character(); !wrong.empty()) {
+      } else if (std::string wrong = character(); !wrong.empty()) {
         return wrong;
       }
     }
@@ -57,7 +57,7 @@ class XmlReader {
     while (n < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[n])) || text_[n] == ':' ||
                                 (n > 0 && (text_[n] == '-' || text_[n] == '_'))))
       ++n;
-    const std::string out(text_.substr(0, n));
+    std::string out(text_.substr(0, n));
     text_.remove_prefix(n);
     return out;
   }
@@ -96,7 +96,7 @@ class XmlReader {
         return "bad attributes of <" + element + ">";
       while (!text_.empty() && text_[0] != '"') {
         if (text_[0] == '<') return "< in a value of <" + element + ">";
-        if (const std::string wrong = character(); !wrong.empty()) return wrong;
+        if (std::string wrong = character(); !wrong.empty()) return wrong;
       }
       if (!take("\"")) return "a value without end";
     }

@@ -16,7 +16,6 @@ namespace {
 
 using test::LyingIntersector;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using testing_tools::Folder;
 using testing_tools::read_file;
 
