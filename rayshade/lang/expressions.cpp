@@ -205,7 +205,7 @@ void Expressions::define(Name name, const Span& span, Value value) {
 }
 
 void Expressions::print(Value value, const Span& span) {
-  if (context_.messages.errors() > 0) return;  // the value may stand in for one that was wrong
+  if (context_.messages.errors() > 0) return destroy(value);  // it may stand in for one that was wrong
   // Unlike a value that is used, a printed one may be infinite or undefined.
   if (!value.varying) {
     context_.prints.push_back(fmt::format("{:f}\n", value.constant));

@@ -138,5 +138,14 @@ TEST(Limits, OfExpressionsAreErrorsNotCrashes) {
   EXPECT_THAT(all_messages(parse_text(doubling)), HasSubstr("too large"));
 }
 
+TEST(Print, WritesNothingOnceThereIsAnError) {
+  for (const char* text : {"print (nosuch)", "print (5%0)", "print (sin(1,2))", "print (5%0) print 2",
+                           "print (5%0) print (-time)"}) {
+    const ParseResult result = parse_text(text);
+    EXPECT_FALSE(result.ok) << text;
+    EXPECT_TRUE(result.prints.empty()) << text;
+  }
+}
+
 }  // namespace
 }  // namespace rayshade
