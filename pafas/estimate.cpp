@@ -8,7 +8,6 @@
 #include <cmath>
 #include <mutex>
 
-#include "pafas/rank_report.h"
 #include "pafas/simulator.h"
 #include "rayshade/cli/program.h"
 #include "rayshade/cli/progress.h"
@@ -111,7 +110,7 @@ Estimate estimate_costs(const EnginePlan& plan, std::uint64_t scene_bytes) {
   const double plain = costs.total_seconds();
   for (double& s : costs.seconds) s *= 1 + costs.tree_region_seconds / std::max(plain, 1e-9);
 
-  out.rank_memory = peak_memory_here();
+  out.rank_memory = peak_memory();
   out.picture_memory = estimate_picture_bytes(plan.settings, pixel_size(plan.format.storage));
   return out;
 }

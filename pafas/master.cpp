@@ -401,7 +401,7 @@ void Master::end(RenderStatistics& statistics) {
     else if (ranks_[i].phase == Phase::kWorking || ranks_[i].phase == Phase::kLoading)
       row.outcome = "left without a report";
   }
-  own.report.peak_memory = peak_memory_here();
+  own.report.peak_memory = peak_memory();
   const ClusterOptions& cluster = run_options_->cluster;
   if (cluster.tile_map && !report_.spans.empty())
     report_.write_tile_map(*cluster.tile_map, report_.spans.back().frame);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pafas/rank_report.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 
 namespace pafas {
@@ -11,12 +9,6 @@ std::uint64_t RankReport::tree_nodes() const {
   std::uint64_t nodes = 0;
   for (const rayshade::ClassReport& c : statistics.intersector.classes) nodes += c.in_tree.nodes;
   return nodes;
-}
-
-std::uint64_t peak_memory_here() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
 void add_counts(const rayshade::RenderStatistics& from, rayshade::RenderStatistics& into) {

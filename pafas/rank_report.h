@@ -26,9 +26,6 @@ struct RankReport {
   std::uint64_t tree_bytes() const { return statistics.intersector.pool_used; }
 };
 
-/// Bytes that this process has had of the machine's memory at most.
-std::uint64_t peak_memory_here();
-
 /// Adds the counts of `from` (rays, tests, samples, trees, times of threads) to those of another rank; what
 /// is a property of the scene stays.
 void add_counts(const rayshade::RenderStatistics& from, rayshade::RenderStatistics& into);

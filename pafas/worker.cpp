@@ -313,7 +313,7 @@ void Worker::report() {
     report_.statistics = scene_->renderer->statistics();
   }
   report_.cpu_seconds = report_.statistics.cpu_seconds;
-  report_.peak_memory = peak_memory_here();
+  report_.peak_memory = peak_memory();
   tell(Report{report_});
 }
 

@@ -56,7 +56,7 @@ void note_resources(RunSummary& run, Clock::time_point start) {
   };
   run.total_cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   run.wall_seconds = seconds_since(start);
-  run.peak_memory = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+  run.peak_memory = peak_memory();
 }
 
 void write_text(const std::string& name, const std::string& text) {

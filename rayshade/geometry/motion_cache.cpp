@@ -16,7 +16,7 @@ AffinePair inverted(const Affine& forward, const TransformList& list, double tim
   for (const TransformList::Element& element : list.elements()) {
     if (element.animated) where = element.animated->location;
   }
-  throw MotionError("the transforms of an object have no inverse at this time", where, time);
+  throw MotionError("the transforms of an object have no inverse", where, time);
 }
 
 }  // namespace

@@ -48,6 +48,12 @@ int quota_cpus() {
 
 }  // namespace
 
+std::uint64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
 std::uint64_t available_memory() {
   std::uint64_t bytes = memory_available();
   const std::uint64_t limit = number_in("/sys/fs/cgroup/memory.max");

@@ -103,6 +103,8 @@ std::uint64_t estimate_picture_bytes(const RenderSettings& settings, std::size_t
 /// Bytes that this process may still take: the smallest of the machine's available memory, the limit of its
 /// control group, and its address space limit.
 std::uint64_t available_memory();
+/// Bytes that this process has had of the machine's memory at most.
+std::uint64_t peak_memory();
 /// Threads that this process may use: affinity mask, control group quota, SLURM_CPUS_PER_TASK. Where `share`
 /// processes of one job are on this machine, what is not already given to each of them is divided (rule 19).
 int available_threads(int share = 1);

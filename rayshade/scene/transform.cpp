@@ -34,17 +34,15 @@ Affine step_at(const AnimatedStep& step, const Moment& moment) {
   for (std::size_t i = 0; i < count; ++i) {
     v[i] = step.arguments[i].evaluate(moment);
     if (!std::isfinite(v[i])) {
-      throw MotionError(fmt::format("a transform has no finite value at time {:g}", moment.time),
-                        step.location, moment.time);
+      throw MotionError("a transform has no finite value", step.location, moment.time);
     }
   }
   switch (step.kind) {
     case StepKind::kScale:
       for (std::size_t i = 0; i < 3; ++i) {
         if (!is_scale_factor(v[i])) {
-          throw MotionError(
-              fmt::format("degenerate scale {:g} {:g} {:g} at time {:g}", v[0], v[1], v[2], moment.time),
-              step.location, moment.time);
+          throw MotionError(fmt::format("degenerate scale {:g} {:g} {:g}", v[0], v[1], v[2]), step.location,
+                            moment.time);
         }
       }
       return scaling({v[0], v[1], v[2]});
@@ -57,7 +55,7 @@ Affine step_at(const AnimatedStep& step, const Moment& moment) {
   }
   const Affine out{{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}}, {v[9], v[10], v[11]}};
   if (!inverse(out)) {
-    throw MotionError(fmt::format("singular matrix at time {:g}", moment.time), step.location, moment.time);
+    throw MotionError("singular matrix", step.location, moment.time);
   }
   return out;
 }
@@ -167,6 +165,9 @@ IntervalAffine step_range(const AnimatedStep& step, const Interval& time, double
 }
 
 }  // namespace
+
+MotionError::MotionError(const std::string& what, Location where, double when)
+    : std::runtime_error(fmt::format("{} at time {:g}", what, when)), location(where), time(when) {}
 
 void TransformList::append(const Affine& map) {
   if (!elements_.empty() && !elements_.back().animated) {

@@ -32,8 +32,8 @@ struct AnimatedStep {
 /// A degenerate value reached while moving (scale 0, singular matrix); rendering stops with an error that
 /// names the time and the place.
 struct MotionError : std::runtime_error {
-  MotionError(const std::string& what, Location where, double when)
-      : std::runtime_error(what), location(where), time(when) {}
+  /// The time is added to `what`.
+  MotionError(const std::string& what, Location where, double when);
   Location location;
   double time;
 };

@@ -42,7 +42,7 @@ struct TextureSpace {
     if (texture.animated) {
       const Affine forward = texture.source->transform.at(e.moment);
       const auto inverted = inverse(forward);
-      if (!inverted) throw MotionError("Singular matrix.", texture.source->location, e.moment.time);
+      if (!inverted) throw MotionError("singular matrix", texture.source->location, e.moment.time);
       map = &moving.emplace(AffinePair{forward, *inverted});
     }
     q = map->inverse.point(e.point);

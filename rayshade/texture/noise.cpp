@@ -40,8 +40,7 @@ inline Axis axis_of(double coordinate) {
     axis.d0 = x - static_cast<double>(cell);
     axis.d1 = x - static_cast<double>(cell + 1);
   } else {
-    // So large that every number is an integer, and a multiple of 4 at least; or not a number, which must
-    // come through.
+    // So large that every number is an integer; or not a number, which must come through.
     const double cell = std::fmod(x, 4096);
     axis.low = std::isfinite(cell) ? static_cast<std::uint32_t>(cell < 0 ? cell + 4096 : cell) : 0;
     axis.high = (axis.low + 1) & 4095;

@@ -112,6 +112,19 @@ TEST_F(ProgramTest, QuietMeansWarningsAndErrorsOnly) {
   EXPECT_THAT(read_file(path("report.txt")), HasSubstr("sphere \"x\""));
 }
 
+TEST_F(ProgramTest, AToleranceOutOfPlaceIsWrongUsage) {
+  EXPECT_EQ(go("-q --tolerance .1 -O a.png", kSmall).status, 2);
+  EXPECT_EQ(go("-q --tolerance -1 --sampling sobol -O a.png", kSmall).status, 2);
+  EXPECT_EQ(go("-q --tolerance .1 --sampling sobol -O a.png", kSmall).status, 0);
+}
+
+TEST_F(ProgramTest, AFinishedPictureReplacesThePartialOneOfAnyRun) {
+  write_file(path("a.partial.png"), "left behind");
+  EXPECT_EQ(go("-q -O a.png", kSmall).status, 0);
+  EXPECT_TRUE(fs::exists(path("a.png")));
+  EXPECT_FALSE(fs::exists(path("a.partial.png")));
+}
+
 TEST_F(ProgramTest, AnIgnoredOutfileIsTold) {
   const Outcome one = go("-q -O a.png", std::string("outfile b.png\n") + kSmall);
   EXPECT_THAT(one.err, HasSubstr("outfile 'b.png' is ignored: -O names the picture"));
